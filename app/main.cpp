@@ -43,7 +43,7 @@ int report_error(int code, const std::string& message) noexcept {
   return code;
 }
 
-/// The message of a warning on one line, without control characters.
+/// Formats the message of a warning on one line, without control characters.
 class CleanMessage final : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg& message, const std::tm& /*time*/,
@@ -72,19 +72,19 @@ const CLI::App& command_so_far(const CLI::App& program) {
   return *command;
 }
 
-/// The message about the first unknown option if a known one is similar; else empty. A missing
-/// option is often a misspelt one.
+/// The message about the first unknown option if it resembles a known one; otherwise empty. An
+/// option that seems to be missing is often misspelt.
 std::string misspelt_option(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : options_of(command)) {
     if (option->nonpositional()) std::ranges::move(names_of(*option), std::back_inserter(names));
   }
-  const std::vector<std::string_view> known(names.begin(), names.end());
+  const std::vector<std::string_view> option_names(names.begin(), names.end());
   for (const std::string& word : command.remaining()) {
-    const std::string given = word.substr(0, word.find('='));
-    if (!given.starts_with("--")) continue;
-    if (const auto nearest = nearest_name(given, known)) {
-      return given + ": is not an option; did you mean " + std::string(*nearest) + "?";
+    const std::string option_name = word.substr(0, word.find('='));
+    if (!option_name.starts_with("--")) continue;
+    if (const auto nearest = nearest_name(option_name, option_names)) {
+      return option_name + ": is not an option; did you mean " + std::string(*nearest) + "?";
     }
   }
   return "";
@@ -92,7 +92,7 @@ std::string misspelt_option(const CLI::App& command) {
 
 /// Makes a write past the file size limit, or to a closed pipe, fail with an error instead of a
 /// signal, so that the program cleans up.
-void let_writes_fail() {
+void ignore_write_signals() {
   static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
   static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
 }
@@ -106,7 +106,7 @@ void keep_freed_memory() {
   static_cast<void>(::mallopt(M_TRIM_THRESHOLD, kTrimThreshold));
 }
 
-/// For instance "touchtrial 1.2.3 (f697f373)".
+/// The version and commit, for instance "touchtrial 1.2.3 (f697f373)".
 std::string version_line() {
   std::string line = "touchtrial " + std::string(program_version());
   if (!program_commit().empty()) line += " (" + std::string(program_commit()) + ")";
@@ -115,10 +115,10 @@ std::string version_line() {
 
 int parse_and_run(int argc, char** argv) {
   keep_freed_memory();
-  let_writes_fail();
+  ignore_write_signals();
   set_up_log();
   registration::register_protocols();
-  answer_for_passphrases();
+  provide_passphrases();
   CLI::App program("A psychophysics runner for textures that are felt.", "touchtrial");
   program.set_version_flag("--version", version_line());
   program.require_subcommand(1);
@@ -138,36 +138,37 @@ int parse_and_run(int argc, char** argv) {
     const CLI::App& command = command_so_far(program);
     const std::string misspelt = misspelt_option(command);
     return report_error(kBadInput, (misspelt.empty() ? error.what() : misspelt) + "; see " +
-                                       words_of(command) + " --help");
+                                       full_name_of(command) + " --help");
   }
   return action();
 }
 
 /// Whether a thread could not be started, which needs memory for its stack. oneTBB reports this
 /// only in the message.
-bool lacks_a_thread(const std::exception& error) {
-  const auto* const of_system = dynamic_cast<const std::system_error*>(&error);
-  return (of_system != nullptr && of_system->code() == std::errc::resource_unavailable_try_again) ||
+bool is_thread_shortage(const std::exception& error) {
+  const auto* const system_error = dynamic_cast<const std::system_error*>(&error);
+  return (system_error != nullptr &&
+          system_error->code() == std::errc::resource_unavailable_try_again) ||
          std::string_view(error.what()).starts_with("pthread_create has failed");
 }
 
-/// When memory or threads run out, an exception leaves oneTBB's own threads and terminates the
-/// program; this prints one line. The next run removes leftover drafts.
-[[noreturn]] void end_for_lack_of_memory() noexcept {
-  bool is_lack = false;
+/// The terminate handler: when memory or threads run out, an exception escapes from oneTBB's own
+/// threads. Prints one line; the next run removes leftover drafts.
+[[noreturn]] void exit_out_of_memory() noexcept {
+  bool is_shortage = false;
   try {
     if (const std::exception_ptr failure = std::current_exception()) {
       std::rethrow_exception(failure);
     }
   } catch (const std::bad_alloc&) {
-    is_lack = true;
+    is_shortage = true;
   } catch (const std::exception& error) {
-    is_lack = lacks_a_thread(error);
+    is_shortage = is_thread_shortage(error);
   } catch (...) {
   }
-  if (!is_lack) std::abort();
+  if (!is_shortage) std::abort();
   static constexpr std::string_view kLine =
-      "touchtrial: there is too little memory; close other programs, or give fewer --jobs\n";
+      "touchtrial: out of memory; close other programs, or give fewer --jobs\n";
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kLine.data(), kLine.size());
   ::_exit(kFailed);
 }
@@ -176,7 +177,7 @@ bool lacks_a_thread(const std::exception& error) {
 /// \return 0 done, 1 failed, 2 bad arguments or bad study file, 3 verification failed, kClosedPipe
 ///   (without a line) if the output's reader has exited
 int run_program(int argc, char** argv) noexcept {
-  std::set_terminate(end_for_lack_of_memory);
+  std::set_terminate(exit_out_of_memory);
   try {
     return parse_and_run(argc, argv);
   } catch (const ClosedPipe&) {
@@ -190,14 +191,13 @@ int run_program(int argc, char** argv) noexcept {
   } catch (const VerificationError& error) {
     return report_error(kNotVerified, error.what());
   } catch (const std::bad_alloc&) {
-    return report_error(kFailed,
-                        "there is not enough memory; close other programs or use smaller images");
+    return report_error(kFailed, "out of memory; close other programs or use smaller images");
   } catch (const std::exception& error) {
-    return report_error(kFailed,
-                        lacks_a_thread(error)
-                            ? "there is not enough memory for the program's threads, or too "
-                              "many threads run; close other programs, or give fewer --jobs"
-                            : error.what());
+    return report_error(
+        kFailed,
+        is_thread_shortage(error)
+            ? "the system cannot start another thread; close other programs, or give fewer --jobs"
+            : error.what());
   }
 }
 

@@ -1,4 +1,5 @@
-// Fractional filters, sub-bands and whole extractions, beside OpenCV and the machine's bounds.
+// Fractional filters, sub-bands and complete extractions, compared with OpenCV and the machine's
+// bounds.
 #include "bench/inputs.hpp"
 #include "bench/limits.hpp"
 #include "bench/peers/opencv.hpp"
@@ -23,22 +24,22 @@ namespace touchtrial::bench {
 namespace {
 
 constexpr const char* kGrey = "grey levels";
-constexpr double kOurTolerance_grey = 4e-5;
+constexpr double kEngineTolerance_grey = 4e-5;
 /// filter2D uses the Fourier transform for masks of 11 x 11 and more.
 constexpr double kPeerTolerance_grey = 2e-3;
-/// Sub-bands reach 510, where the last bit of a float is 3e-5.
+/// Sub-bands reach 510, where a float's precision is 3e-5.
 constexpr double kBandTolerance_grey = 3e-4;
 constexpr int kWideRadius = 7;
 constexpr int kLargeSize_px = 4096;
-constexpr int kOtherSizes_px[] = {64, 128, 256, 1024, 2048};
+constexpr int kFurtherSizes_px[] = {64, 128, 256, 1024, 2048};
 
-/// The timed picture with its orders by the adaptive method.
+/// The timed picture and its orders from the adaptive method.
 struct OrderedImage {
   GreyImage image = timed_image(kDefaultSize_px);
   Plane<float> orders = [this] {
-    engine::WantedPlanes wanted;
-    wanted.order = true;
-    return engine::extract_texture<float>(image, {}, wanted).order;
+    engine::RequestedPlanes planes;
+    planes.order = true;
+    return engine::extract_texture<float>(image, {}, planes).order;
   }();
   Plane<float> texture{kDefaultSize_px, kDefaultSize_px};
 
@@ -50,15 +51,15 @@ struct OrderedImage {
     return half;
   }
 
-  /// The engine's adaptive filter alone.
+  /// Runs only the engine's adaptive filter.
   void filter(int radius) {
-    constexpr std::size_t kReadPast = 2 * engine::kVectorBytes / sizeof(float);
+    constexpr std::size_t kOverread = 2 * engine::kVectorBytes / sizeof(float);
     const auto width = static_cast<std::size_t>(image.width());
-    engine::AlignedRows<float> last(1, width, kReadPast);
+    engine::AlignedRows<float> last(1, width, kOverread);
     engine::ExtendedRows rows(image, radius);
     for (int y = 0; y < image.height(); ++y) {
       const float* order = orders.row(y).data();
-      if ((static_cast<std::size_t>(y) + 1) * width + kReadPast > orders.size()) {
+      if ((static_cast<std::size_t>(y) + 1) * width + kOverread > orders.size()) {
         std::copy_n(order, width, last.row(0));
         order = last.row(0);
       }
@@ -73,22 +74,22 @@ OrderedImage ordered_image() {
 }
 
 Case adaptive_filter(int radius, const std::string& target = {}) {
-  Case one = timed(
+  Case result = timed(
       "touchtrial", ordered_image, [=](OrderedImage& input) { input.filter(radius); },
       [=](const OrderedImage& input) {
         return largest_difference(
             input.texture, engine::gl_texture<double>(input.image, radius, input.half_orders()));
       },
-      kOurTolerance_grey);
-  one.simd_target = target;
-  return one;
+      kEngineTolerance_grey);
+  result.simd_target = target;
+  return result;
 }
 
-/// A picture, and a float plane by OpenCV or the engine.
+/// A picture, and its texture from OpenCV or the engine.
 struct FixedFilter {
   GreyImage image = timed_image(kDefaultSize_px);
   engine::Extraction<float> result{};
-  cv::Mat mask{}, from{}, texture{};
+  cv::Mat mask{}, input{}, texture{};
 };
 
 double fixed_error(const Plane<float>& texture, const GreyImage& image, int radius) {
@@ -107,22 +108,22 @@ Case fixed_filter() {
       [](const FixedFilter& filter) {
         return fixed_error(filter.result.texture, filter.image, kDefaultRadius);
       },
-      kOurTolerance_grey);
+      kEngineTolerance_grey);
 }
 
-/// \param subtracts  whether the mask gives the enhanced image I + T, from which I is subtracted
-Case filter2d(int radius, const std::string& input = "f32", bool subtracts = false) {
+/// \param enhanced  whether the mask computes the enhanced image I + T, from which I is subtracted
+Case filter2d(int radius, const std::string& depth = "f32", bool enhanced = false) {
   return timed(
-      "OpenCV filter2D, " + input + (subtracts ? ", I + T less I" : ""),
+      "OpenCV filter2D, " + depth + (enhanced ? ", I + T - I" : ""),
       [=] {
-        FixedFilter filter{.mask = fixed_order_mask(kFixedOrder, radius, subtracts)};
-        mat_of(filter.image).convertTo(filter.from, input == "f32" ? CV_32F : CV_8U);
+        FixedFilter filter{.mask = fixed_order_mask(kFixedOrder, radius, enhanced)};
+        mat_of(filter.image).convertTo(filter.input, depth == "f32" ? CV_32F : CV_8U);
         return filter;
       },
       [=](FixedFilter& filter) {
-        cv::filter2D(filter.from, filter.texture, CV_32F, filter.mask, {-1, -1}, 0,
+        cv::filter2D(filter.input, filter.texture, CV_32F, filter.mask, {-1, -1}, 0,
                      cv::BORDER_REFLECT);
-        if (subtracts) cv::subtract(filter.texture, filter.from, filter.texture);
+        if (enhanced) cv::subtract(filter.texture, filter.input, filter.texture);
       },
       [=](const FixedFilter& filter) {
         return fixed_error(plane_of(filter.texture), filter.image, radius);
@@ -130,42 +131,42 @@ Case filter2d(int radius, const std::string& input = "f32", bool subtracts = fal
       kPeerTolerance_grey);
 }
 
-/// The largest error of ll, lh, hl and hh.
+/// \return the largest error of ll, lh, hl and hh
 double error_of_bands(const GreyImage& image, const std::array<Plane<float>, 4>& bands) {
   const engine::SubBands truth = engine::daub4_sub_bands(image);
   return std::max({largest_difference(bands[0], truth.ll), largest_difference(bands[1], truth.lh),
                    largest_difference(bands[2], truth.hl), largest_difference(bands[3], truth.hh)});
 }
 
-/// A picture with what is extracted from it, by the engine or by OpenCV.
+/// A picture, and its extraction by the engine or by OpenCV.
 template <class Peer = int>
-struct Extracted {
+struct ExtractionState {
   GreyImage image;
   Peer peer{};
   engine::Extraction<float> result{};
-  double highest = 0.0;  ///< of the texture, for the models' forces
+  double max_height = 0.0;  ///< of the texture; the models need it
 };
 
-Case our_daub4() {
+Case engine_daub4() {
   return timed(
-      "touchtrial", [] { return Extracted<>{timed_image(kDefaultSize_px)}; },
-      [](Extracted<>& our) { engine::extract_sub_bands(our.image, our.result); },
-      [](const Extracted<>& our) {
-        return error_of_bands(our.image, {our.result.sub_band_ll, our.result.sub_band_lh,
-                                          our.result.sub_band_hl, our.result.sub_band_hh});
+      "touchtrial", [] { return ExtractionState<>{timed_image(kDefaultSize_px)}; },
+      [](ExtractionState<>& work) { engine::extract_sub_bands(work.image, work.result); },
+      [](const ExtractionState<>& work) {
+        return error_of_bands(work.image, {work.result.sub_band_ll, work.result.sub_band_lh,
+                                           work.result.sub_band_hl, work.result.sub_band_hh});
       },
       kBandTolerance_grey);
 }
 
-Case opencv_daub4(const std::string& name, Daub4Way way) {
-  using Peer = Extracted<OpenCvDaub4>;
+Case opencv_daub4(const std::string& name, Daub4Mode mode) {
+  using State = ExtractionState<OpenCvDaub4>;
   return timed(
       name,
       [=] {
-        return Peer{timed_image(kDefaultSize_px), OpenCvDaub4(way)};
+        return State{timed_image(kDefaultSize_px), OpenCvDaub4(mode)};
       },
-      [](Peer& work) { work.peer.run(mat_of(work.image)); },
-      [](const Peer& work) {
+      [](State& work) { work.peer.run(mat_of(work.image)); },
+      [](const State& work) {
         const std::array<cv::Mat, 4>& bands = work.peer.bands();
         return error_of_bands(work.image, {plane_of(bands[0]), plane_of(bands[1]),
                                            plane_of(bands[2]), plane_of(bands[3])});
@@ -177,63 +178,63 @@ double texture_error(const GreyImage& image, const Plane<float>& texture) {
   return ExtractionTruth(image, kDefaultRadius).texture_error(texture);
 }
 
-Case our_extraction(int size_px, bool with_highest) {
+Case engine_extraction(int size_px, bool includes_maximum) {
   return timed(
-      "touchtrial", [=] { return Extracted<>{timed_image(size_px)}; },
-      [=](Extracted<>& our) {
-        engine::extract_texture_into(our.image, {}, {}, our.result);
-        const Plane<float>& heights = our.result.texture;
-        if (with_highest) {
-          our.highest = engine::highest_of(
+      "touchtrial", [=] { return ExtractionState<>{timed_image(size_px)}; },
+      [=](ExtractionState<>& work) {
+        engine::extract_texture_into(work.image, {}, {}, work.result);
+        const Plane<float>& heights = work.result.texture;
+        if (includes_maximum) {
+          work.max_height = engine::highest_of(
               {.geometry = {0.2, heights.height(), heights.width()}, .heights = heights.samples()});
         }
       },
-      [](const Extracted<>& our) { return texture_error(our.image, our.result.texture); },
-      kOurTolerance_grey);
+      [](const ExtractionState<>& work) { return texture_error(work.image, work.result.texture); },
+      kEngineTolerance_grey);
 }
 
-Case ring_sums(const std::string& name, int size_px, bool with_highest, RingSums how) {
-  using Peer = Extracted<OpenCvRingSums>;
+Case ring_sums(const std::string& name, int size_px, bool includes_maximum, RingSums mode) {
+  using State = ExtractionState<OpenCvRingSums>;
   return timed(
       name,
       [=] {
-        return Peer{timed_image(size_px), OpenCvRingSums(how)};
+        return State{timed_image(size_px), OpenCvRingSums(mode)};
       },
-      [=](Peer& work) {
+      [=](State& work) {
         work.peer.extract(mat_of(work.image), kDefaultRadius);
-        if (with_highest) work.highest = work.peer.highest();
+        if (includes_maximum) work.max_height = work.peer.max_texture();
       },
-      [](const Peer& work) { return texture_error(work.image, plane_of(work.peer.texture())); },
+      [](const State& work) { return texture_error(work.image, plane_of(work.peer.texture())); },
       kPeerTolerance_grey);
 }
 
 struct Streams {
   GreyImage image;
   Plane<float> plane{image.height(), image.width()};
-  float kept = 0.0F;
+  float sum = 0.0F;
 };
 
 Cases bounds(int size_px) {
-  const auto streams = [=] { return Streams{timed_image(size_px)}; };
-  const auto writing = [](Writing how) {
-    return [=](Streams& work) { stream(work.image.samples(), work.plane.samples(), how); };
+  const auto make_streams = [=] { return Streams{timed_image(size_px)}; };
+  const auto write_case = [](WriteMode mode) {
+    return [=](Streams& work) { stream(work.image.samples(), work.plane.samples(), mode); };
   };
-  return {timed("arithmetic", streams,
-                [](Streams& work) { work.kept += texture_arithmetic(work.plane.size()); }),
-          timed("memory", streams, writing(Writing::through_caches)),
-          timed("memory, past caches", streams, writing(Writing::past_caches))};
+  return {timed("arithmetic", make_streams,
+                [](Streams& work) { work.sum += texture_arithmetic(work.plane.size()); }),
+          timed("memory", make_streams, write_case(WriteMode::through_caches)),
+          timed("memory, past caches", make_streams, write_case(WriteMode::past_caches))};
 }
 
-Row extraction_row(int size_px, bool with_highest, const Goal& goal) {
-  const char* what = with_highest ? "texture and what forces need" : "adaptive texture";
-  Row row{
-      .what = fmt::format("{}, {} x {}", what, size_px, size_px),
-      .ours = our_extraction(size_px, with_highest),
-      .peers = {ring_sums("OpenCV ring sums, u8", size_px, with_highest, RingSums::plain),
-                ring_sums("OpenCV ring sums, tuned, u8", size_px, with_highest, RingSums::tuned)},
-      .bounds = bounds(size_px),
-      .goal = goal,
-      .error_unit = kGrey};
+Row extraction_row(int size_px, bool includes_maximum, const Goal& goal) {
+  const char* task = includes_maximum ? "texture and its highest point" : "adaptive texture";
+  Row row{.title = fmt::format("{}, {} x {}", task, size_px, size_px),
+          .ours = engine_extraction(size_px, includes_maximum),
+          .peers = {ring_sums("OpenCV ring sums, u8", size_px, includes_maximum, RingSums::plain),
+                    ring_sums("OpenCV ring sums, tuned, u8", size_px, includes_maximum,
+                              RingSums::tuned)},
+          .bounds = bounds(size_px),
+          .goal = goal,
+          .error_unit = kGrey};
   for (Case& peer : row.peers) peer.is_slow = size_px >= kLargeSize_px;
   return row;
 }
@@ -244,7 +245,7 @@ Rows extraction_rows(const Scope& scope) {
   Rows rows;
   for (const std::string& target : scope.simd_targets) {
     const std::string set = instruction_set_of(target);
-    rows.push_back({.what = "adaptive 5 x 5 on u8, " + set,
+    rows.push_back({.title = "adaptive 5 x 5 on u8, " + set,
                     .ours = adaptive_filter(kDefaultRadius, target),
                     .peers = {filter2d(kDefaultRadius)},
                     .error_unit = kGrey});
@@ -252,26 +253,26 @@ Rows extraction_rows(const Scope& scope) {
     if (set == "AVX2") rows.back().goal = {"ratio", 0.75};
   }
   rows.insert(rows.end(),
-              {{.what = "adaptive 15 x 15",
+              {{.title = "adaptive 15 x 15",
                 .ours = adaptive_filter(kWideRadius),
                 .peers = {filter2d(kWideRadius)},
                 .goal = {"ratio", 0.05},
                 .error_unit = kGrey},
-               {.what = "fixed 5 x 5 on u8",
+               {.title = "fixed 5 x 5 on u8",
                 .ours = fixed_filter(),
                 .peers = {filter2d(kDefaultRadius, "u8"), filter2d(kDefaultRadius, "f32", true)},
                 .error_unit = kGrey},
-               {.what = "DAUB4, four bands",
-                .ours = our_daub4(),
-                .peers = {opencv_daub4("OpenCV sepFilter2D, u8", Daub4Way::full_size),
-                          opencv_daub4("OpenCV sepFilter2D by rows, u8", Daub4Way::by_rows)},
+               {.title = "DAUB4, four bands",
+                .ours = engine_daub4(),
+                .peers = {opencv_daub4("OpenCV sepFilter2D, u8", Daub4Mode::full_size),
+                          opencv_daub4("OpenCV sepFilter2D by rows, u8", Daub4Mode::by_rows)},
                 .goal = {"ratio", 0.08},
                 .error_unit = kGrey},
                extraction_row(kDefaultSize_px, false, {"of bound", 1.6}),
                extraction_row(kDefaultSize_px, true, {"of bound", 2.0}),
                extraction_row(kLargeSize_px, false, {"of bound", 1.6}),
                extraction_row(kLargeSize_px, true, {"of bound", 2.0})});
-  for (const int size_px : kOtherSizes_px) rows.push_back(extraction_row(size_px, false, {}));
+  for (const int size_px : kFurtherSizes_px) rows.push_back(extraction_row(size_px, false, {}));
   return rows;
 }
 

@@ -29,12 +29,12 @@ GreyImage& chosen_picture() {
   return picture;
 }
 
-engine::Extraction<double> extracted(const GreyImage& image, int radius) {
+engine::Extraction<double> extraction_of(const GreyImage& image, int radius) {
   engine::ExtractionOptions options;
   options.radius = radius;
-  engine::WantedPlanes wanted;
-  wanted.csgv = true;
-  return engine::extract_texture<double>(image, options, wanted);
+  engine::RequestedPlanes planes;
+  planes.csgv = true;
+  return engine::extract_texture<double>(image, options, planes);
 }
 
 }  // namespace
@@ -42,9 +42,9 @@ engine::Extraction<double> extracted(const GreyImage& image, int radius) {
 std::vector<GreyImage> shipped_pictures() {
   std::vector<GreyImage> pictures;
   for (const stimuli::StimulusRecipe& recipe : stimuli::stimulus_recipes()) {
-    const bool fills =
+    const bool fills_frame =
         recipe.kind != stimuli::StimulusKind::flat && recipe.kind != stimuli::StimulusKind::object;
-    if (fills) pictures.push_back(stimulus(std::string(recipe.label)));
+    if (fills_frame) pictures.push_back(stimulus(std::string(recipe.label)));
   }
   return pictures;
 }
@@ -53,9 +53,9 @@ GreyImage timed_image(int size_px) {
   const GreyImage& picture = chosen_picture();
   GreyImage square(size_px, size_px);
   for (int y = 0; y < size_px; ++y) {
-    const auto from = picture.row(engine::symmetric_index(y, picture.height()));
+    const auto row = picture.row(engine::symmetric_index(y, picture.height()));
     for (int x = 0; x < size_px; ++x) {
-      square.at(y, x) = from[static_cast<std::size_t>(engine::symmetric_index(x, picture.width()))];
+      square.at(y, x) = row[static_cast<std::size_t>(engine::symmetric_index(x, picture.width()))];
     }
   }
   return square;
@@ -66,7 +66,7 @@ void choose_timed_picture(const std::filesystem::path& path) {
 }
 
 ExtractionTruth::ExtractionTruth(const GreyImage& image, int radius)
-    : truth_(extracted(image, radius)) {}
+    : truth_(extraction_of(image, radius)) {}
 
 double ExtractionTruth::texture_error(const Plane<float>& texture) const {
   if (texture.size() != truth_.texture.size()) return std::numeric_limits<double>::infinity();
@@ -81,7 +81,7 @@ double ExtractionTruth::texture_error(const Plane<float>& texture) const {
 }
 
 Plane<double> tv_gabor_truth(const GreyImage& image) {
-  engine::TvGaborSolver<double> solver(image, kEndless);
+  engine::TvGaborSolver<double> solver(image, kUnreachableGap);
   static_cast<void>(solver.run(kTvGaborSteps, engine::Patience::unlimited));
   return solver.texture();
 }

@@ -1,4 +1,4 @@
-/// \file The input images, and reference results in double precision.
+/// \file Input images, and reference results in double precision.
 #pragma once
 
 #include "core/plane.hpp"
@@ -9,23 +9,23 @@
 
 namespace touchtrial::bench {
 
-/// The pictures of stimuli/ that fill their frame, 500 x 500, without the flat one.
+/// \return the pictures of stimuli/ that fill their frame of 500 x 500 pixels, except the flat one
 /// \throws FileError if one is missing
 [[nodiscard]] std::vector<GreyImage> shipped_pictures();
 
-/// A square of any size from the picture for timing, bark.png by default. It is extended beyond the
-/// edge by mirror images, so that there is no seam.
+/// \return the picture for timing (bark.png by default), cropped to a square or extended to one by
+///   mirror images
 [[nodiscard]] GreyImage timed_image(int size_px);
 /// \throws FileError if the picture cannot be read
 void choose_timed_picture(const std::filesystem::path& path);
 
-/// The adaptive extraction of an image in double.
+/// The reference: the adaptive extraction of an image in double precision.
 class ExtractionTruth {
  public:
   ExtractionTruth(const GreyImage& image, int radius);
 
-  /// The largest error, in grey levels. Pixels whose CSGV is within 1e-3 of 2 or 128 do not count:
-  /// there, two orders of summation may take different branches of the order map.
+  /// \return the largest error, in grey levels. Pixels whose CSGV is within 1e-3 of 2 or 128 are
+  ///   ignored, because rounding may select another branch of the order map
   [[nodiscard]] double texture_error(const Plane<float>& texture) const;
 
  private:
@@ -33,10 +33,10 @@ class ExtractionTruth {
 };
 
 /// TV-Gabor's default options, except for a gap that no solver reaches.
-inline const engine::TvGaborOptions kEndless{.gap = -1.0};
+inline const engine::TvGaborOptions kUnreachableGap{.gap = -1.0};
 
-/// TV-Gabor's v under the default options after hundreds of steps in double.
 /// \param image  not flat
+/// \return TV-Gabor's v with the default options, after hundreds of steps in double
 [[nodiscard]] Plane<double> tv_gabor_truth(const GreyImage& image);
 
 }  // namespace touchtrial::bench

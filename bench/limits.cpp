@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-// Compiled once for every target: this file includes itself.
+// This file includes itself, to be compiled once for every target.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bench/limits.cpp"
 
@@ -21,7 +21,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Reals = hn::ScalableTag<float>;
 
-/// Whole vectors from the first address that is a multiple of a cache line on.
+/// Writes whole vectors, starting at a cache line.
 template <bool kPastCaches>
 HWY_INLINE void stream_all(const std::uint8_t* bytes, float* samples, std::size_t count) {
   const Reals d;
@@ -60,9 +60,9 @@ using Real = hn::Vec<Reals>;
 
 constexpr std::size_t kBlock = hn::MaxLanes(Shorts());
 
-/// A ring's difference is a sum over its neighbours and the centre. Horner's rule combines two of
-/// them, with an order for each pixel, to the texture.
-HWY_INLINE Real rings_of(Short ring_1, Short ring_2, Real order, bool upper) {
+/// Combines the differences of two rings into the texture by Horner's rule, with one order per
+/// pixel.
+HWY_INLINE Real texture_of_rings(Short ring_1, Short ring_2, Real order, bool upper) {
   const Reals d;
   const Longs wide;
   const hn::Half<Shorts> half;
@@ -75,18 +75,18 @@ HWY_INLINE Real rings_of(Short ring_1, Short ring_2, Real order, bool upper) {
   return hn::Mul(hn::Mul(order, hn::Set(d, 0.125F)), sum);
 }
 
-/// A weighted sum of four neighbours of two kinds, as the exact sub-bands need.
+/// \return a weighted sum of four values, as in the exact sub-bands
 HWY_INLINE Long band_of(Short a, Short b, Short c, Short e, Short weights) {
   const Longs wide;
   auto sum = hn::Zero(wide);
-  auto other = hn::Zero(wide);
+  auto sum_1 = hn::Zero(wide);
   for (const Short v : {a, b, c, e}) {
-    sum = hn::ReorderWidenMulAccumulate(wide, v, weights, sum, other);
+    sum = hn::ReorderWidenMulAccumulate(wide, v, weights, sum, sum_1);
   }
-  return hn::RearrangeToOddPlusEven(sum, other);
+  return hn::RearrangeToOddPlusEven(sum, sum_1);
 }
 
-HWY_INLINE Short tripled(Short v) {
+HWY_INLINE Short triple(Short v) {
   return hn::Add(hn::Add(v, v), v);
 }
 
@@ -103,48 +103,50 @@ float arithmetic(std::size_t pixels) {
   auto textures = hn::Zero(d);
   auto bands = hn::Zero(wide);
   auto order = hn::Set(d, 0.3F);
-  auto inner_before = hn::Load(shorts, rows[6]);
-  auto outer_before = hn::Load(shorts, rows[7]);
-  auto whole_before = hn::Load(shorts, rows[7]);
-  auto root_before = whole_before;
+  auto previous_inner = hn::Load(shorts, rows[6]);
+  auto previous_outer = hn::Load(shorts, rows[7]);
+  auto previous_whole = hn::Load(shorts, rows[7]);
+  auto previous_root = previous_whole;
   const auto low = hn::Set(shorts, 97);
   const auto high = hn::Set(shorts, 61);
   for (std::size_t i = 0; i < pixels; i += 2 * kBlock) {
-    // Two rows of a block share the sub-bands' filter, and each has rings of its own.
+    // The two rows of a block share the sub-bands' filter, but each row has its own rings.
     const auto x0 = hn::Load(shorts, rows[0]);
     const auto x1 = hn::Load(shorts, rows[1]);
     const auto x2 = hn::Load(shorts, rows[2]);
     const auto x3 = hn::Load(shorts, rows[3]);
     const auto x4 = hn::Load(shorts, rows[4]);
     const auto x5 = hn::Load(shorts, rows[5]);
-    for (const auto& near : {std::array{x0, x1, x2, x3, x4}, std::array{x1, x2, x3, x4, x5}}) {
-      const auto inner = hn::Add(hn::Add(near[1], near[3]), near[2]);
-      const auto outer = hn::Add(hn::Add(near[0], near[4]), near[2]);
-      const auto nine = hn::Add(hn::ShiftLeft<3>(near[2]), near[2]);
-      const auto ring_1 = hn::Sub(hn::Sub(nine, inner), hn::Add(inner_before, outer_before));
-      const auto ring_2 = hn::Sub(hn::Sub(nine, outer), hn::Add(outer_before, whole_before));
-      textures = hn::Add(textures, rings_of(ring_1, ring_2, order, false));
-      textures = hn::Add(textures, rings_of(ring_1, ring_2, order, true));
-      inner_before = ring_2;
-      outer_before = ring_1;
+    for (const auto& rows_of_block :
+         {std::array{x0, x1, x2, x3, x4}, std::array{x1, x2, x3, x4, x5}}) {
+      const auto inner = hn::Add(hn::Add(rows_of_block[1], rows_of_block[3]), rows_of_block[2]);
+      const auto outer = hn::Add(hn::Add(rows_of_block[0], rows_of_block[4]), rows_of_block[2]);
+      const auto times_9 = hn::Add(hn::ShiftLeft<3>(rows_of_block[2]), rows_of_block[2]);
+      const auto ring_1 = hn::Sub(hn::Sub(times_9, inner), hn::Add(previous_inner, previous_outer));
+      const auto ring_2 = hn::Sub(hn::Sub(times_9, outer), hn::Add(previous_outer, previous_whole));
+      textures = hn::Add(textures, texture_of_rings(ring_1, ring_2, order, false));
+      textures = hn::Add(textures, texture_of_rings(ring_1, ring_2, order, true));
+      previous_inner = ring_2;
+      previous_outer = ring_1;
     }
+    // The filters have coefficients a + b sqrt(3): "whole" sums use a, and "root" sums use b.
     const auto outer_sum = hn::Add(x0, x3);
     const auto inner_sum = hn::Add(x1, x2);
     const auto outer_difference = hn::Sub(x0, x3);
     const auto inner_difference = hn::Sub(x1, x2);
-    const auto low_whole = hn::Add(outer_sum, tripled(inner_sum));
+    const auto low_whole = hn::Add(outer_sum, triple(inner_sum));
     const auto low_root = hn::Add(outer_difference, inner_difference);
-    const auto high_whole = hn::Sub(outer_difference, tripled(inner_difference));
+    const auto high_whole = hn::Sub(outer_difference, triple(inner_difference));
     const auto high_root = hn::Sub(inner_sum, outer_sum);
-    const auto ll = band_of(low_whole, low_root, whole_before, root_before, low);
-    const auto hl = band_of(low_whole, low_root, whole_before, root_before, high);
-    const auto lh = band_of(high_whole, high_root, whole_before, root_before, low);
-    const auto hh = band_of(high_whole, high_root, whole_before, root_before, high);
+    const auto ll = band_of(low_whole, low_root, previous_whole, previous_root, low);
+    const auto hl = band_of(low_whole, low_root, previous_whole, previous_root, high);
+    const auto lh = band_of(high_whole, high_root, previous_whole, previous_root, low);
+    const auto hh = band_of(high_whole, high_root, previous_whole, previous_root, high);
     bands = hn::Add(bands, hn::Xor(hn::Xor(ll, hl), hn::Xor(lh, hh)));
-    whole_before = hn::Xor(low_whole, inner_before);
-    root_before = hn::Xor(high_root, outer_before);
+    previous_whole = hn::Xor(low_whole, previous_inner);
+    previous_root = hn::Xor(high_root, previous_outer);
     order = hn::Max(order, hn::Mul(textures, hn::Set(d, 1e-9F)));
-    // Makes the sums differ between turns.
+    // Makes the sums differ between iterations.
     hn::Store(hn::Xor(x0, x4), shorts, rows[i / (2 * kBlock) % 2]);
   }
   return hn::GetLane(hn::SumOfLanes(d, hn::Add(textures, hn::ConvertTo(d, bands))));
@@ -161,9 +163,9 @@ namespace touchtrial::bench {
 HWY_EXPORT(copy);
 HWY_EXPORT(arithmetic);
 
-void stream(std::span<const std::uint8_t> bytes, std::span<float> samples, Writing how) {
+void stream(std::span<const std::uint8_t> bytes, std::span<float> samples, WriteMode mode) {
   HWY_DYNAMIC_DISPATCH(copy)
-  (bytes.data(), samples.data(), samples.size(), how == Writing::past_caches);
+  (bytes.data(), samples.data(), samples.size(), mode == WriteMode::past_caches);
 }
 
 float texture_arithmetic(std::size_t pixels) {

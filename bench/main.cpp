@@ -1,5 +1,5 @@
-// touchtrial-bench: the table's cases as benchmarks of Google Benchmark. scripts/bench runs it row
-// by row and compares.
+// touchtrial-bench: the cases of the benchmark table, as benchmarks of Google Benchmark.
+// scripts/bench runs it row by row and compares the times.
 #include "bench/inputs.hpp"
 #include "bench/rows.hpp"
 #include "core/errors.hpp"
@@ -36,14 +36,14 @@ struct Arguments {
   bool quick = false;
 };
 
-/// A case whose job is created when it is first measured, and then kept.
+/// A case whose job is created when it is first run.
 class LazyCase {
  public:
   /// \param goal  of the case's row; none for peers and bounds
-  LazyCase(Case one, const Row& row, const Goal& goal)
-      : case_(std::move(one)),
+  LazyCase(Case benchmark_case, const Row& row, const Goal& goal)
+      : case_(std::move(benchmark_case)),
         goal_(goal),
-        goal_name_("goal: " + std::string(goal.limits)),
+        goal_name_("goal: " + std::string(goal.metric)),
         error_name_("error: " + row.error_unit),
         count_name_("count: " + row.count_unit) {}
 
@@ -53,14 +53,14 @@ class LazyCase {
     if (job_->error && !error_) error_ = job_->error();
     if (error_.value_or(0.0) > case_.tolerance) {
       return state.SkipWithError(
-          "its error is above the tolerance, so it does not compute the same result");
+          "its error exceeds the tolerance, so it does not compute the same result");
     }
     while (state.KeepRunningBatch(case_.operations)) {
       if (job_->run) job_->run();
     }
     if (error_) state.counters[error_name_] = *error_;
     if (job_->count) state.counters[count_name_] = job_->count();
-    if (!goal_.limits.empty()) state.counters[goal_name_] = goal_.target;
+    if (!goal_.metric.empty()) state.counters[goal_name_] = goal_.target;
   }
 
   void run(int runs) {
@@ -77,30 +77,31 @@ class LazyCase {
   std::optional<double> error_;
 };
 
-void register_case(const std::string& name, Case one, const Row& row, const Goal& goal,
+void register_case(const std::string& name, Case benchmark_case, const Row& row, const Goal& goal,
                    const Arguments& arguments) {
-  if (one.simd_target.empty()) one.simd_target = arguments.target;
-  const auto made = std::make_shared<LazyCase>(one, row, goal);
-  if (arguments.runs > 0) return made->run(arguments.runs);
+  if (benchmark_case.simd_target.empty()) benchmark_case.simd_target = arguments.target;
+  const auto lazy_case = std::make_shared<LazyCase>(benchmark_case, row, goal);
+  if (arguments.runs > 0) return lazy_case->run(arguments.runs);
   auto* const registered = benchmark::RegisterBenchmark(
-      name.c_str(), [=](benchmark::State& state) { made->measure(state); });
+      name.c_str(), [=](benchmark::State& state) { lazy_case->measure(state); });
   registered->Unit(benchmark::kMicrosecond);
-  if (one.clock == Clock::wall) registered->UseRealTime();
-  if (one.clock == Clock::processor) registered->MeasureProcessCPUTime();
-  if (one.clock == Clock::none) registered->Iterations(1);
-  const bool once = arguments.quick || one.clock == Clock::none;
-  registered->Repetitions(once ? 1 : one.is_slow ? kSlowRepetitions : kRepetitions);
+  if (benchmark_case.clock == Clock::wall) registered->UseRealTime();
+  if (benchmark_case.clock == Clock::processor) registered->MeasureProcessCPUTime();
+  if (benchmark_case.clock == Clock::none) registered->Iterations(1);
+  const bool runs_once = arguments.quick || benchmark_case.clock == Clock::none;
+  registered->Repetitions(runs_once ? 1 : benchmark_case.is_slow ? kSlowRepetitions : kRepetitions);
 }
 
-/// \return whether a row or a case has the name
+/// \return whether a row or a case has the name in `arguments`
 bool register_rows(const Rows& rows, const Arguments& arguments) {
   bool found = false;
   for (const Row& row : rows) {
-    const auto add = [&](const std::string& case_name, const Case& one, const Goal& goal) {
-      const std::string name = row.what + " | " + case_name;
-      if (!arguments.name.empty() && arguments.name != row.what && arguments.name != name) return;
+    const auto add = [&](const std::string& case_name, const Case& benchmark_case,
+                         const Goal& goal) {
+      const std::string name = row.title + " | " + case_name;
+      if (!arguments.name.empty() && arguments.name != row.title && arguments.name != name) return;
       found = true;
-      register_case(name, one, row, goal, arguments);
+      register_case(name, benchmark_case, row, goal, arguments);
     };
     add(row.ours.name, row.ours, row.goal);
     for (const Case& peer : row.peers) add(peer.name, peer, {});
@@ -130,7 +131,7 @@ void run(Arguments arguments) {
   if (arguments.runs == 0) benchmark::RunSpecifiedBenchmarks();
 }
 
-/// \return 0 done, 1 failed, 2 bad arguments
+/// \return the exit code: 0 done, 1 failed, 2 invalid arguments
 int run_program(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   CLI::App program("The table's cases as benchmarks; also accepts the options of Google Benchmark");

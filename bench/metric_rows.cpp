@@ -1,4 +1,5 @@
-// MS-SSIM, co-occurrence statistics and TV-Gabor, beside OpenCV, plain code and other solvers.
+// MS-SSIM, co-occurrence statistics and TV-Gabor, compared with OpenCV, plain code and other
+// solvers.
 #include "bench/inputs.hpp"
 #include "bench/peers/opencv.hpp"
 #include "bench/rows.hpp"
@@ -28,15 +29,15 @@ namespace {
 constexpr double kMsSsimTolerance = 1e-4;
 /// All statistics except contrast are at most a few units.
 constexpr double kGlcmTolerance = 1e-9;
-/// Relative to v; large because some solvers stop early.
+/// Relative to v; large, because some solvers stop early.
 constexpr double kTvGaborTolerance = 0.5;
-constexpr double kGoalOfV = 1e-3;
+constexpr double kGoalDistance = 1e-3;
 /// ADMM computes its gap at every tenth step, so checking at this interval is free.
-constexpr int kAdmmRhythm = 10;
+constexpr int kAdmmCheckSteps = 10;
 constexpr int kMaxAdmmSteps = 300;
 constexpr int kQuickPictures = 2;
 
-/// The two pictures that `evaluate` compares: the adaptive texture and that of a fixed order.
+/// The two pictures that `evaluate` compares: the adaptive texture and a texture of fixed order.
 struct TexturePair {
   GreyImage a, b;
   double similarity = 0.0;
@@ -64,7 +65,7 @@ Case ms_ssim(const std::string& name, Measure measure) {
 }
 
 Row ms_ssim_row() {
-  return {.what = "MS-SSIM, five scales",
+  return {.title = "MS-SSIM, five scales",
           .ours = ms_ssim(
               "touchtrial",
               [](const TexturePair& pair) { return engine::ms_ssim<float>(pair.a, pair.b).unit; }),
@@ -84,25 +85,25 @@ Row ms_ssim_row() {
           .error_unit = "of MS-SSIM"};
 }
 
-double relative(double value, double truth) {
+double relative_error(double value, double truth) {
   return std::abs(value - truth) / std::max(1.0, std::abs(truth));
 }
 
-struct Counted {
+struct GlcmState {
   GreyImage image = timed_image(kDefaultSize_px);
   engine::GlcmTable table{};
 };
 
-double error_of(const Counted& counted) {
+double error_of(const GlcmState& state) {
   double largest = 0.0;
-  for (std::size_t i = 0; i < counted.table.size(); ++i) {
+  for (std::size_t i = 0; i < state.table.size(); ++i) {
     const engine::GlcmOffset offset = engine::kGlcmOffsets[i];
-    const engine::GlcmStatistics& ours = counted.table[i];
-    const auto truth = reference::glcm_statistics(counted.image, offset.dy, offset.dx);
-    largest =
-        std::max({largest, relative(ours.angular_second_moment, truth.angular_second_moment),
-                  relative(ours.entropy, truth.entropy), relative(ours.contrast, truth.contrast),
-                  relative(ours.correlation, truth.correlation)});
+    const engine::GlcmStatistics& ours = state.table[i];
+    const auto truth = reference::glcm_statistics(state.image, offset.dy, offset.dx);
+    largest = std::max(
+        {largest, relative_error(ours.angular_second_moment, truth.angular_second_moment),
+         relative_error(ours.entropy, truth.entropy), relative_error(ours.contrast, truth.contrast),
+         relative_error(ours.correlation, truth.correlation)});
   }
   return largest;
 }
@@ -110,12 +111,12 @@ double error_of(const Counted& counted) {
 template <class Measure>
 Case glcm(const std::string& name, Measure measure) {
   return timed(
-      name, [] { return Counted{}; },
-      [=](Counted& counted) { counted.table = measure(counted.image); }, error_of, kGlcmTolerance);
+      name, [] { return GlcmState{}; },
+      [=](GlcmState& state) { state.table = measure(state.image); }, error_of, kGlcmTolerance);
 }
 
 Row glcm_row() {
-  return {.what = "GLCM and statistics",
+  return {.title = "GLCM and statistics",
           .ours = glcm("touchtrial",
                        [](const GreyImage& image) { return engine::glcm_statistics(image); }),
           .peers = {glcm("plain loop over pairs, u8",
@@ -124,13 +125,13 @@ Row glcm_row() {
           .error_unit = "relative"};
 }
 
-/// The number of steps after which ADMM in single precision reaches the goal's distance to v.
+/// \return the number of steps after which ADMM in single precision is within kGoalDistance of v
 int steps_to_goal(const GreyImage& image) {
   const Plane<double> truth = tv_gabor_truth(image);
-  engine::TvGaborSolver<float> solver(image, kEndless);
-  for (int steps = kAdmmRhythm; steps <= kMaxAdmmSteps; steps += kAdmmRhythm) {
+  engine::TvGaborSolver<float> solver(image, kUnreachableGap);
+  for (int steps = kAdmmCheckSteps; steps <= kMaxAdmmSteps; steps += kAdmmCheckSteps) {
     static_cast<void>(solver.run(steps, engine::Patience::unlimited));
-    if (distance_relative_to(solver.texture(), truth) <= kGoalOfV) return steps;
+    if (distance_relative_to(solver.texture(), truth) <= kGoalDistance) return steps;
   }
   return std::numeric_limits<int>::max();
 }
@@ -140,7 +141,7 @@ int default_steps() {
   return steps;
 }
 
-struct Decomposed {
+struct TvGaborState {
   GreyImage image = timed_image(kDefaultSize_px);
   Plane<float> v{};
 };
@@ -148,26 +149,27 @@ struct Decomposed {
 /// \param decompose  computes v of an image
 template <class Decompose>
 Case tv_gabor(const std::string& name, Decompose decompose) {
-  Case one = timed(
-      name, [] { return Decomposed{}; }, [=](Decomposed& work) { work.v = decompose(work.image); },
-      [](const Decomposed& work) {
+  Case result = timed(
+      name, [] { return TvGaborState{}; },
+      [=](TvGaborState& work) { work.v = decompose(work.image); },
+      [](const TvGaborState& work) {
         static const Plane<double> truth = tv_gabor_truth(work.image);
         return distance_relative_to(work.v, truth);
       },
       kTvGaborTolerance);
-  one.is_slow = true;
-  return one;
+  result.is_slow = true;
+  return result;
 }
 
 Case admm_to_goal() {
   return tv_gabor("touchtrial", [](const GreyImage& image) {
-    engine::TvGaborSolver<float> solver(image, kEndless);
+    engine::TvGaborSolver<float> solver(image, kUnreachableGap);
     static_cast<void>(solver.run(default_steps(), engine::Patience::unlimited));
     return solver.texture();
   });
 }
 
-/// FFTW's forward and backward transforms of one size. Unlike the engine's, they are planned by
+/// FFTW's forward and inverse transforms of one size. Unlike the engine's, they are planned by
 /// measurement, because a bound need not be reproducible.
 class MeasuredTransforms {
  public:
@@ -176,7 +178,7 @@ class MeasuredTransforms {
         spectrum_(fftwf_alloc_complex(area(side, side / 2 + 1))),
         forward_(fftwf_plan_dft_r2c_2d(side, side, samples_, spectrum_, FFTW_MEASURE)),
         inverse_(fftwf_plan_dft_c2r_2d(side, side, spectrum_, samples_, FFTW_MEASURE)) {
-    // Zeros stay zeros and take the same time as other samples.
+    // Zeros take the same time as other samples, and stay zeros.
     std::fill_n(samples_, area(side, side), 0.0F);
   }
   ~MeasuredTransforms() {
@@ -206,30 +208,32 @@ class MeasuredTransforms {
   fftwf_plan inverse_;
 };
 
-/// The forward and backward transforms of the same number of steps with their checks.
+/// The transforms in the solver's steps and checks.
 Case transforms() {
-  Case one = timed(
+  Case result = timed(
       "transforms",
       [] { return std::make_unique<MeasuredTransforms>(engine::torus_length(kDefaultSize_px)); },
       [](const std::unique_ptr<MeasuredTransforms>& transforms) {
         const int steps = default_steps();
         transforms->run(steps + steps / engine::PenaltySchedule::kStepsBetweenChecks);
       });
-  one.is_slow = true;
-  return one;
+  result.is_slow = true;
+  return result;
 }
 
-/// The largest number of steps to the goal over the pictures that fill their frame.
+/// \return the maximum number of steps to the goal over the shipped pictures
 double steps_on_pictures(bool quick) {
   std::vector<GreyImage> pictures = shipped_pictures();
   if (quick) pictures.resize(kQuickPictures);
   int max_steps = 0;
-  for (const GreyImage& one : pictures) max_steps = std::max(max_steps, steps_to_goal(one));
+  for (const GreyImage& picture : pictures) {
+    max_steps = std::max(max_steps, steps_to_goal(picture));
+  }
   return max_steps;
 }
 
 Rows tv_gabor_rows(bool quick) {
-  return {{.what = "TV-Gabor, to 1e-3 of v",
+  return {{.title = "TV-Gabor, to 1e-3 of v",
            .ours = admm_to_goal(),
            .peers = {tv_gabor("fixed point, 1000 steps",
                               [](const GreyImage& image) {
@@ -237,12 +241,12 @@ Rows tv_gabor_rows(bool quick) {
                               })},
            .goal = {"ratio", 0.08},
            .error_unit = "of v"},
-          {.what = "TV-Gabor, beside its own transforms",
+          {.title = "TV-Gabor, against its own transforms",
            .ours = admm_to_goal(),
            .bounds = {transforms()},
            .goal = {"of bound", 1.3},
            .error_unit = "of v"},
-          {.what = "TV-Gabor, most steps to 1e-3 of v",
+          {.title = "TV-Gabor, most steps to 1e-3 of v",
            .ours = counted("touchtrial", [=] { return steps_on_pictures(quick); }),
            .goal = {"count", 80},
            .count_unit = "steps"}};

@@ -1,5 +1,5 @@
-/// \file The benchmark's table. A row compares a job of the engine with the same job by peers, with
-/// the machine's bound, and with the goal.
+/// \file The benchmark table. A row compares the engine's time for a job with the times of peers,
+///   with the machine's bound, and with a goal.
 #pragma once
 
 #include <functional>
@@ -15,13 +15,13 @@ namespace touchtrial::bench {
 /// A job with its inputs and outputs, which can be run repeatedly.
 struct Job {
   std::function<void()> run;  ///< overwrites the previous outputs; allocates no planes
-  /// The error of the last run's outputs against double precision; empty if not defined.
+  /// The error of the last run's outputs relative to double precision; empty if undefined.
   std::function<double()> error{};
   /// A count, for instance of steps; empty if nothing is counted.
   std::function<double()> count{};
 };
 
-/// How a job is timed.
+/// The clock that times a job.
 enum class Clock {
   processor,  ///< of the process, in all threads
   wall,       ///< for work that includes the disk
@@ -34,17 +34,17 @@ struct Case {
   std::function<Job()> make;
   /// A larger error means that the case does not compute the same result.
   double tolerance = std::numeric_limits<double>::infinity();
-  std::string simd_target = {};  ///< to run on; "" for the best
+  std::string simd_target = {};  ///< target to use; "" for the best
   Clock clock = Clock::processor;
-  int threads = 1;       ///< that the engine may use
-  int operations = 1;    ///< in one run; times are divided by it
+  int threads = 1;       ///< maximum for the engine
+  int operations = 1;    ///< per run; times are divided by it
   bool is_slow = false;  ///< few repetitions
 };
 
 using Cases = std::vector<Case>;
 
-/// A case with its own state.
-/// \param make_state  returns the state: its inputs and outputs
+/// \return a case with its own state
+/// \param make_state  returns the state: inputs and outputs
 /// \param run  called with the state
 template <class MakeState, class Run>
 [[nodiscard]] Case timed(std::string name, MakeState make_state, Run run) {
@@ -54,7 +54,7 @@ template <class MakeState, class Run>
           }};
 }
 
-/// The same with an error.
+/// The same for a case with an error.
 /// \param error  called with the state after a run
 template <class MakeState, class Run, class Error>
 [[nodiscard]] Case timed(std::string name, MakeState make_state, Run run, Error error,
@@ -67,26 +67,25 @@ template <class MakeState, class Run, class Error>
           tolerance};
 }
 
-/// A case that is only counted.
+/// \return a case with only a count
 [[nodiscard]] inline Case counted(std::string name, std::function<double()> count) {
   return {.name = std::move(name),
           .make = [=] { return Job{.run = {}, .count = count}; },
           .clock = Clock::none};
 }
 
-/// A number of a row, and what limits it from above.
+/// The upper limit of one of a row's metrics.
 struct Goal {
-  /// "ratio" (to the first peer), "of bound", "us" or "count"; "" for none.
-  std::string_view limits;
+  /// "ratio" (to the first peer), "of bound", "us" or "count"; "" for no goal.
+  std::string_view metric;
   double target = 0.0;
 };
 
 struct Row {
-  std::string what;
+  std::string title;
   Case ours;
-  Cases peers = {};  ///< the first one is the goal's, the others are for the record
-  /// The machine's bounds by name. Variants of one bound differ after a comma, and the fastest
-  /// counts.
+  Cases peers = {};  ///< the goal refers to the first; the others are for information
+  /// The machine's bounds. Names of variants differ after a comma; the fastest variant counts.
   Cases bounds = {};
   Goal goal = {};
   std::string error_unit = {};
@@ -101,13 +100,13 @@ struct Scope {
   bool quick = false;                     ///< few repetitions and pictures
 };
 
-/// Fractional filters, sub-bands and whole extractions.
+/// Fractional filters, sub-bands and complete extractions.
 [[nodiscard]] Rows extraction_rows(const Scope& scope);
 /// MS-SSIM, co-occurrence statistics and TV-Gabor.
 [[nodiscard]] Rows metric_rows(const Scope& scope);
-/// The servo's computations in a tick: forces, kinematics, and the whole tick.
+/// The servo's computations in a tick: forces, kinematics, and the complete tick.
 [[nodiscard]] Rows servo_rows();
-/// A whole simulated study.
+/// A complete simulated study.
 [[nodiscard]] Rows study_rows();
 
 /// The side of a default stimulus.
@@ -117,7 +116,7 @@ inline constexpr int kDefaultRadius = 2;
 /// The order of all cases with a fixed order.
 inline constexpr double kFixedOrder = 0.55;
 
-/// "AVX-512" for Highway's "AVX3" and its relatives; other names are unchanged.
+/// \return "AVX-512" for Highway's "AVX3" and its variants; other names are unchanged
 [[nodiscard]] inline std::string instruction_set_of(const std::string& simd_target) {
   return simd_target.starts_with("AVX3") ? "AVX-512" : simd_target;
 }

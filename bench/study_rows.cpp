@@ -1,4 +1,4 @@
-// A whole simulated study.
+// A complete simulated study.
 #include "app/commands/study_inputs.hpp"
 #include "bench/rows.hpp"
 #include "core/random.hpp"
@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
 
 constexpr int kParticipants = 20;
 
-/// The classification study that comes with the program: 25 trials of 10 s.
+/// \return the key of the shipped classification study: 25 trials of 10 s
 study::StudyKey study_key(const fs::path& folder) {
   registration::register_protocols();
   study::StudyKey key = study::simulated_study_key(
@@ -48,15 +48,15 @@ struct PreparedStudy {
   engine::Pack pack{key.pack_folder};
 };
 
-const PreparedStudy& prepared() {
+const PreparedStudy& prepared_study() {
   static const PreparedStudy study;
   return study;
 }
 
-/// One transaction for each session.
-/// \return the database's bytes a trial
+/// Simulates the study, with one transaction per session.
+/// \return the database's bytes per trial
 double simulate(int threads) {
-  const PreparedStudy& study = prepared();
+  const PreparedStudy& study = prepared_study();
   const simulation::SubjectModel subject = app::subject_for({}, study.key.study, {});
   simulation::SimulationOptions options;
   options.participants = kParticipants;
@@ -74,14 +74,14 @@ double simulate(int threads) {
   return std::round(static_cast<double>(fs::file_size(database)) / trials);
 }
 
-/// The bare explorations of the study's trials, tick by tick: only the hand and the stimulus force,
-/// without servo, limits, senses, traces, answers and training.
-void explore_alone() {
-  const study::StudyKey& key = prepared().key;
+/// Explores all trials of the study tick by tick with only the hand and the stimulus force: no
+/// servo, limits, senses, traces, answers or training.
+void explore_without_servo() {
+  const study::StudyKey& key = prepared_study().key;
   const simulation::SubjectModel subject = app::subject_for({}, key.study, {});
-  const session::StimulusSource source(prepared().pack, key);
+  const session::StimulusSource source(prepared_study().pack, key);
   const simulation::SimulationOptions options;
-  Vec3 kept;
+  Vec3 sum_mm;
   for (int number = 1; number <= kParticipants; ++number) {
     const device::HandFactors factors =
         simulation::hand_of_participant(subject, options.seed, static_cast<std::uint64_t>(number));
@@ -96,43 +96,43 @@ void explore_alone() {
       while (hand.read(sample) == device::DeviceStatus::ok) {
         static_cast<void>(hand.write(force.force_n(sample)));
       }
-      kept = kept + sample.position_mm;
+      sum_mm = sum_mm + sample.position_mm;
     }
   }
-  benchmark::DoNotOptimize(kept);
+  benchmark::DoNotOptimize(sum_mm);
 }
 
 /// Wall-clock time, because it includes the disk.
 template <class Work>
-Case on_the_study(const std::string& name, Work work, int threads = 1) {
-  Case one = timed(
-      name, [] { return &prepared(); }, [=](const PreparedStudy*) { work(); });
-  one.clock = Clock::wall;
-  one.threads = threads;
-  one.is_slow = true;
-  return one;
+Case study_case(const std::string& name, Work work, int threads = 1) {
+  Case result = timed(
+      name, [] { return &prepared_study(); }, [=](const PreparedStudy*) { work(); });
+  result.clock = Clock::wall;
+  result.threads = threads;
+  result.is_slow = true;
+  return result;
 }
 
 Case simulated_study(const std::string& name, int threads) {
-  return on_the_study(
+  return study_case(
       name, [=] { simulate(threads); }, threads);
 }
 
 }  // namespace
 
 Rows study_rows() {
-  return {{.what = "study of 20 x 25 trials of 10 s, one thread",
+  return {{.title = "study of 20 x 25 trials of 10 s, one thread",
            .ours = simulated_study("touchtrial", 1),
            .goal = {"us", 1e6}},
-          {.what = "the same study against its 5 million ticks",
+          {.title = "the same study against its 5 million ticks",
            .ours = simulated_study("touchtrial", 1),
-           .peers = {on_the_study("hand and force alone", explore_alone)},
+           .peers = {study_case("hand and force only", explore_without_servo)},
            .goal = {"ratio", 2}},
-          {.what = "the same study, two threads",
+          {.title = "the same study, two threads",
            .ours = simulated_study("touchtrial", 2),
            .peers = {simulated_study("one thread", 1)},
            .goal = {"ratio", 1.0 / 1.8}},
-          {.what = "database, a trial of 10 s",
+          {.title = "database, a trial of 10 s",
            .ours = counted("touchtrial", [] { return simulate(1); }),
            .goal = {"count", 100e3},
            .count_unit = "bytes"}};

@@ -29,7 +29,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   endif()
 endif()
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-  # The oldest processor that the program runs on; faster ones are chosen at run time, by name.
+  # The minimum processor. Kernels for newer ones are chosen at run time.
   target_compile_options(touchtrial_settings INTERFACE -march=x86-64-v2)
 endif()
 if(TOUCHTRIAL_SANITIZE)

@@ -10,7 +10,7 @@ install(TARGETS touchtrial RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONE
 # record/merging/bundle_module.cpp searches this path.
 install(TARGETS touchtrial_postgres LIBRARY DESTINATION lib/touchtrial COMPONENT postgres)
 
-# The ready studies with the files that they name, for `touchtrial examples`
+# The example studies with the files that they name, for `touchtrial examples`
 # (app/commands/shipped_files.cpp).
 set(shipped "${CMAKE_INSTALL_DATADIR}/touchtrial")
 install(DIRECTORY config/ DESTINATION "${shipped}/config" COMPONENT program

@@ -2,7 +2,7 @@
 # warnings of uninitialised values.
 set(TOUCHTRIAL_UNHURRIED -O1 -Wno-maybe-uninitialized)
 
-option(TOUCHTRIAL_UNITY "Compile several files at a time: sooner done, but less is rebuilt alone" OFF)
+option(TOUCHTRIAL_UNITY "Compile several files at a time: faster from scratch, slower after a small change" OFF)
 
 # The number of files per unit, for the product and for tests.
 set(TOUCHTRIAL_BATCH 24)
@@ -12,12 +12,12 @@ set(TOUCHTRIAL_TEST_TIMEOUT_S 1800)
 
 # touchtrial_library(NAME [UNHURRIED] [ONLY files...] [EXCEPT folders and files...] [PUBLIC targets...]
 #                    [PRIVATE libraries...])
-# One static library a folder, of every .cpp file in and below it, except those that are in libraries
-# of their own. PUBLIC: targets of ours, along the arrows of docs/architecture.md; PRIVATE:
-# third-party libraries, whose headers no public header includes. UNHURRIED: nothing in it is worth
-# optimising. With TOUCHTRIAL_UNITY many files of the library are compiled at a time, so that names in
-# the anonymous namespaces of one namespace must differ. Position-independent for the Python module,
-# which is a shared library; hidden symbols keep the program's calls and data as direct as without.
+# One static library per folder, from every .cpp file in and below it, except those of libraries in its
+# subfolders. PUBLIC: targets of this project, along the arrows of docs/architecture.md; PRIVATE:
+# third-party libraries, whose headers no public header includes. UNHURRIED: not worth optimising. With
+# TOUCHTRIAL_UNITY many files of the library are compiled at a time, so names in the anonymous namespaces of
+# one namespace must differ. The code is position-independent for the Python module, a shared library;
+# hidden symbols keep calls and data in the program direct.
 function(touchtrial_library name)
   cmake_parse_arguments(ARG "UNHURRIED" "" "ONLY;EXCEPT;PUBLIC;PRIVATE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp")
@@ -56,15 +56,15 @@ function(touchtrial_built_in_text target file header name_space function)
   target_sources(${target} PRIVATE "${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp")
 endfunction()
 
-# Compiles the files of a target TOUCHTRIAL_BATCH at a time: most of a small unit's time goes into headers.
-# Files that Highway compiles once for every SIMD target include themselves, and so stay alone.
+# Compiles the files of a target TOUCHTRIAL_BATCH at a time, because headers take most of a small unit's time.
+# Files that Highway compiles once per SIMD target include themselves, so each remains a unit.
 function(touchtrial_compile_together target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   touchtrial_allow_included_sources(${target})
   set(files 0)
   foreach(source ${ARGN})
-    file(STRINGS "${source}" once_a_target REGEX "#include <hwy/foreach_target\\.h>")
-    if(once_a_target)
+    file(STRINGS "${source}" per_target REGEX "#include <hwy/foreach_target\\.h>")
+    if(per_target)
       continue()
     endif()
     math(EXPR batch "${files} / ${TOUCHTRIAL_BATCH}")
@@ -73,8 +73,7 @@ function(touchtrial_compile_together target)
   endforeach()
 endfunction()
 
-# Whatever is not in the translation unit's own file counts as a header for GCC, which then warns of
-# anonymous namespaces in it.
+# GCC treats included sources as headers, and warns of anonymous namespaces in them.
 function(touchtrial_allow_included_sources target)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
@@ -106,10 +105,9 @@ function(touchtrial_joined variable batch name)
 endfunction()
 
 # touchtrial_test(NAME [WHOLE] [JOINED] [COMPUTES] [EXCEPT folders...] [LIBRARIES ...])
-# One test program a folder, of every *_test.cpp file in and below it, except those of folders that
-# have a program of their own; each test case is a CTest test, or with WHOLE the program is, whose
-# cases then share what is dear to make. COMPUTES: the tests themselves compute for long, so that
-# optimising them pays.
+# One test program per folder, from every *_test.cpp file in and below it, except those of folders with
+# their own program. Each test case is a CTest test; with WHOLE the program is one test, whose cases share
+# expensive fixtures. COMPUTES: the tests compute for so long that optimising them pays.
 function(touchtrial_test name)
   cmake_parse_arguments(ARG "JOINED;WHOLE;COMPUTES" "" "EXCEPT;LIBRARIES" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*_test.cpp")

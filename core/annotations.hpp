@@ -1,5 +1,4 @@
-/// \file Keys of an annotated schema that only tables read, or that become its descriptions. Private
-/// to core.
+/// \file Keys of an annotated schema for the tables of settings. Private to core.
 #pragma once
 
 namespace touchtrial {

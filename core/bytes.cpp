@@ -14,11 +14,12 @@ std::string to_hex(ByteView bytes) {
 std::optional<Bytes> from_hex(std::string_view hex) {
   if (hex.size() % 2 != 0) return std::nullopt;
   Bytes bytes(hex.size() / 2);
-  std::size_t written = 0;
+  std::size_t byte_count = 0;
   const char* end = nullptr;
-  const int failed =
-      sodium_hex2bin(bytes.data(), bytes.size(), hex.data(), hex.size(), nullptr, &written, &end);
-  if (failed != 0 || end != hex.data() + hex.size() || written != bytes.size()) return std::nullopt;
+  const int status = sodium_hex2bin(bytes.data(), bytes.size(), hex.data(), hex.size(), nullptr,
+                                    &byte_count, &end);
+  if (status != 0 || end != hex.data() + hex.size() || byte_count != bytes.size())
+    return std::nullopt;
   return bytes;
 }
 

@@ -1,4 +1,4 @@
-/// \file Byte buffers, and bytes written as text: hexadecimal and base64, both by libsodium.
+/// \file Byte buffers and their text encodings, hexadecimal and base64.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ using ByteView = std::span<const std::uint8_t>;
   return {bytes.begin(), bytes.end()};
 }
 
-/// Lower-case hexadecimal, two digits a byte.
+/// Lower-case hexadecimal, two digits per byte.
 [[nodiscard]] std::string to_hex(ByteView bytes);
 
 /// \return the bytes, or nothing if `hex` has an odd length or a character that is not a

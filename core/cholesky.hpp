@@ -9,20 +9,20 @@
 namespace touchtrial {
 
 /// Replaces the lower triangle of a matrix by its factor; the upper triangle is unchanged.
-/// \param min_share  the smallest share of a diagonal element that elimination may leave
+/// \param min_share  lower limit of each pivot, as a share of the original diagonal element
 /// \return whether the matrix is positive definite; if not, the factor is meaningless
 inline bool factorise(std::span<double> matrix, std::size_t n, double min_share = 0.0) {
-  bool definite = true;
+  bool is_definite = true;
   for (std::size_t j = 0; j < n; ++j) {
-    const double whole = matrix[j * n + j];
+    const double diagonal = matrix[j * n + j];
     for (std::size_t i = j; i < n; ++i) {
-      double rest = matrix[i * n + j];
-      for (std::size_t k = 0; k < j; ++k) rest -= matrix[i * n + k] * matrix[j * n + k];
-      if (i == j) definite = definite && rest > min_share * whole;
-      matrix[i * n + j] = i == j ? std::sqrt(rest) : rest / matrix[j * n + j];
+      double element = matrix[i * n + j];
+      for (std::size_t k = 0; k < j; ++k) element -= matrix[i * n + k] * matrix[j * n + k];
+      if (i == j) is_definite = is_definite && element > min_share * diagonal;
+      matrix[i * n + j] = i == j ? std::sqrt(element) : element / matrix[j * n + j];
     }
   }
-  return definite;
+  return is_definite;
 }
 
 /// Replaces b by the solution x of L x = b.

@@ -14,13 +14,12 @@ namespace {
 constexpr std::size_t kNonceSize = crypto_aead_xchacha20poly1305_ietf_NPUBBYTES;
 constexpr std::size_t kTagSize = crypto_aead_xchacha20poly1305_ietf_ABYTES;
 
-/// The size to which a text is padded.
-std::size_t padded(std::size_t size, std::size_t multiple) {
+std::size_t padded_length(std::size_t size, std::size_t multiple) {
   if (multiple == 0) throw std::invalid_argument("seal: padded_size must be at least 1");
   return (size / multiple + 1) * multiple;
 }
 
-std::optional<Bytes> unpadded(Bytes bytes) {
+std::optional<Bytes> without_padding(Bytes bytes) {
   const auto mark = std::find_if(bytes.rbegin(), bytes.rend(), [](auto byte) { return byte != 0; });
   if (mark == bytes.rend() || *mark != 0x80) return std::nullopt;
   bytes.erase(std::prev(mark.base()), bytes.end());
@@ -44,7 +43,7 @@ std::array<std::uint8_t, kNonceSize> synthetic_nonce(const SecretKey& key, std::
 
 Bytes seal(const SecretKey& key, std::string_view context, ByteView plaintext,
            std::size_t padded_size) {
-  const std::size_t size = padded(plaintext.size(), padded_size);
+  const std::size_t size = padded_length(plaintext.size(), padded_size);
   const auto nonce = synthetic_nonce(derive_key(key, "nonce"), context, plaintext);
   const SecretKey cipher_key = derive_key(key, "cipher");
   Bytes box(kNonceSize + size + kTagSize);
@@ -54,9 +53,9 @@ Bytes seal(const SecretKey& key, std::string_view context, ByteView plaintext,
   std::uint8_t* const text = box.data() + kNonceSize;
   std::copy(plaintext.begin(), plaintext.end(), text);
   text[plaintext.size()] = 0x80;
-  const ByteView authenticated = bytes_of(context);
-  crypto_aead_xchacha20poly1305_ietf_encrypt(text, nullptr, text, size, authenticated.data(),
-                                             authenticated.size(), nullptr, nonce.data(),
+  const ByteView context_bytes = bytes_of(context);
+  crypto_aead_xchacha20poly1305_ietf_encrypt(text, nullptr, text, size, context_bytes.data(),
+                                             context_bytes.size(), nullptr, nonce.data(),
                                              cipher_key.data());
   return box;
 }
@@ -75,12 +74,12 @@ std::optional<Bytes> Unsealer::operator()(std::string_view context, ByteView box
   Bytes text(box.size() - kNonceSize - kTagSize);
   if (text.size() % padded_size != 0) return std::nullopt;
   prepare_sodium();
-  const ByteView authenticated = bytes_of(context);
-  const int failed = crypto_aead_xchacha20poly1305_ietf_decrypt(
+  const ByteView context_bytes = bytes_of(context);
+  const int status = crypto_aead_xchacha20poly1305_ietf_decrypt(
       text.data(), nullptr, nullptr, box.data() + kNonceSize, box.size() - kNonceSize,
-      authenticated.data(), authenticated.size(), box.data(), cipher_key_.data());
-  if (failed != 0) return std::nullopt;
-  return unpadded(std::move(text));
+      context_bytes.data(), context_bytes.size(), box.data(), cipher_key_.data());
+  if (status != 0) return std::nullopt;
+  return without_padding(std::move(text));
 }
 
 SecretKey derive_key(const SecretKey& key, std::string_view purpose) {

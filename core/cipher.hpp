@@ -1,4 +1,4 @@
-/// \file Encrypts what must stay hidden until unblinding, and draws the secrets for it.
+/// \file Encrypts records that stay hidden until unblinding, and generates their secret keys.
 /// XChaCha20-Poly1305 (IETF) by libsodium. All functions are thread-safe.
 #pragma once
 
@@ -15,20 +15,20 @@ using SecretKey = Digest;  ///< 32 secret bytes
 /// gives equal output, and two different messages under one key never share a nonce. Callers give
 /// every message its own context (chain, sequence), so equal messages stay unlinkable.
 /// \param context  authenticated, not stored: `unseal` needs the same bytes
-/// \param padded_size  bytes, >= 1: the plaintext is padded to a multiple of it, so that the length
-///   reveals no more than that
+/// \param padded_size  bytes, >= 1: the plaintext is padded to a multiple of this size, to hide its
+///   length
 /// \return nonce, ciphertext and tag in one buffer
 /// \throws std::invalid_argument if padded_size is 0
 [[nodiscard]] Bytes seal(const SecretKey& key, std::string_view context, ByteView plaintext,
                          std::size_t padded_size = 256);
 
-/// Opens what `seal` returned.
+/// Decrypts a box returned by `seal`.
 /// \return the plaintext, or nothing if key, context, padding or a byte of the box is wrong
 /// \throws std::invalid_argument if padded_size is 0
 [[nodiscard]] std::optional<Bytes> unseal(const SecretKey& key, std::string_view context,
                                           ByteView box, std::size_t padded_size = 256);
 
-/// The same for many boxes of one key.
+/// Decrypts many boxes sealed with the same key.
 class Unsealer {
  public:
   explicit Unsealer(const SecretKey& key);

@@ -1,4 +1,4 @@
-/// \file The JSON Schema of described settings.
+/// \file Writes the JSON Schema of described settings.
 #include "core/annotations.hpp"
 #include "core/describe.hpp"
 
@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Units by the suffix of a key, longest suffix first.
+/// The unit that each suffix of a key stands for, longest suffix first.
 constexpr auto kUnits = std::to_array<Named<std::string_view>>({{"_n_s_per_mm", "N s/mm"},
                                                                 {"_n_s_per_m", "N s/m"},
                                                                 {"_n_per_mm", "N/mm"},
@@ -33,17 +33,17 @@ constexpr auto kUnits = std::to_array<Named<std::string_view>>({{"_n_s_per_mm", 
                                                                 {"_h", "h"}});
 
 std::string_view unit_of(std::string_view key) {
-  const auto* const found =
+  const auto* const match =
       std::ranges::find_if(kUnits, [key](const auto& unit) { return key.ends_with(unit.name); });
-  return found == kUnits.end() ? std::string_view() : found->value;
+  return match == kUnits.end() ? std::string_view() : match->value;
 }
 
-/// Whole numbers without a decimal point.
-ordered_json tidy(const ordered_json& value) {
+/// Removes the decimal point of whole numbers.
+ordered_json without_decimal_point(const ordered_json& value) {
   if (value.is_number_float()) return ordered_json::parse(number_text(value.get<double>()));
   ordered_json copy = value;
   if (copy.is_structured()) {
-    for (ordered_json& inner : copy) inner = tidy(inner);
+    for (ordered_json& inner : copy) inner = without_decimal_point(inner);
   }
   return copy;
 }
@@ -54,8 +54,8 @@ class SchemaOfValue final : public ValueIo {
 
   void number(double& /*value*/, const NumberRange& range) override {
     out_["type"] = "number";
-    out_[range.open_low ? "exclusiveMinimum" : "minimum"] = tidy(range.low);
-    out_[range.open_high ? "exclusiveMaximum" : "maximum"] = tidy(range.high);
+    out_[range.open_low ? "exclusiveMinimum" : "minimum"] = without_decimal_point(range.low);
+    out_[range.open_high ? "exclusiveMaximum" : "maximum"] = without_decimal_point(range.high);
   }
   void boolean(bool& /*value*/) override { out_["type"] = "boolean"; }
   void text(std::string& /*value*/, const TextRule& rule) override {
@@ -65,12 +65,12 @@ class SchemaOfValue final : public ValueIo {
     if (!rule.pattern.empty()) out_["pattern"] = rule.pattern;
     if (!rule.description.empty()) out_[kRange] = rule.description;
   }
-  void one_of(std::size_t /*written*/, std::span<const Form> forms) override {
+  void one_of(std::size_t /*form_index*/, std::span<const Form> forms) override {
     ordered_json list = ordered_json::array();
     for (const Form& form : forms) {
       const std::string pointer = pointer_ + "/anyOf/" + std::to_string(list.size());
-      SchemaOfValue one(list.emplace_back(ordered_json::object()), pointer);
-      form.describe(one);
+      SchemaOfValue form_schema(list.emplace_back(ordered_json::object()), pointer);
+      form.describe(form_schema);
     }
     out_["anyOf"] = std::move(list);
   }
@@ -82,12 +82,12 @@ class SchemaOfValue final : public ValueIo {
   }
 
  private:
-  void whole_number(std::int64_t& /*value*/, std::int64_t low, std::int64_t high) override {
+  void integer_value(std::int64_t& /*value*/, std::int64_t low, std::int64_t high) override {
     out_["type"] = "integer";
     out_["minimum"] = low;
     out_["maximum"] = high;
   }
-  void word(std::size_t& /*at*/, std::span<const std::string_view> words) override {
+  void choice_index(std::size_t& /*index*/, std::span<const std::string_view> words) override {
     out_["type"] = "string";
     out_["enum"] = words;
   }
@@ -111,15 +111,16 @@ class SchemaOfObject final : public ObjectIo {
   SchemaOfObject(ordered_json& out, std::string pointer)
       : out_(out), pointer_(std::move(pointer)) {}
 
-  void member(std::string_view key, const KeyInfo& info, bool is_there,
+  void member(std::string_view key, const KeyInfo& info, bool has_value,
               const Describe& describe) override {
     const std::string pointer = pointer_ + "/properties/" + std::string(key);
     ordered_json property = {{kMeaning, info.meaning}};
     const std::string_view unit = info.unit.empty() ? unit_of(key) : info.unit;
     if (!unit.empty()) property[kUnit] = unit;
     ordered_json defaults;
-    const bool has_default = is_there && !info.required && info.default_text.empty();
-    if (has_default) defaults = tidy(ordered_json::parse(written_as_described(describe)));
+    const bool has_default = has_value && !info.required && info.default_text.empty();
+    if (has_default)
+      defaults = without_decimal_point(ordered_json::parse(described_json(describe)));
     SchemaOfValue value(property, pointer);
     describe(value);
     if (property.contains("properties")) {
@@ -131,17 +132,17 @@ class SchemaOfObject final : public ObjectIo {
     if (!info.range.empty()) property[kRange] = info.range;
     properties_[std::string(key)] = std::move(property);
     if (info.required) required_.push_back(key);
-    for (const std::string_view other : info.aliases) {
-      properties_[std::string(other)] = {{"$ref", "#" + pointer}};
+    for (const std::string_view alias : info.aliases) {
+      properties_[std::string(alias)] = {{"$ref", "#" + pointer}};
     }
   }
   void rule(const Rule& /*rule*/) override {}
   void only_for(std::string_view key, std::span<const std::string_view> words,
-                std::span<const std::string_view> keys, const std::string& /*owner*/) override {
-    ordered_json none = ordered_json::object();
-    for (const std::string_view other : keys) none[std::string(other)] = false;
+                std::span<const std::string_view> keys, const std::string& /*message*/) override {
+    ordered_json forbidden = ordered_json::object();
+    for (const std::string_view restricted : keys) forbidden[std::string(restricted)] = false;
     rules_.push_back({{"if", {{"properties", {{std::string(key), {{"enum", words}}}}}}},
-                      {"else", {{"properties", std::move(none)}}}});
+                      {"else", {{"properties", std::move(forbidden)}}}});
   }
 
   void finish() {
@@ -169,20 +170,20 @@ void SchemaOfValue::object(const std::function<void(ObjectIo&)>& describe) {
 /// "[text](page.md)" becomes "text".
 std::string without_links(const std::string& text) {
   std::string plain;
-  for (std::size_t at = 0; at < text.size(); ++at) {
-    const std::size_t middle = text.find("](", at);
+  for (std::size_t position = 0; position < text.size(); ++position) {
+    const std::size_t middle = text.find("](", position);
     const std::size_t end = middle == std::string::npos ? middle : text.find(')', middle);
-    if (text[at] != '[' || end == std::string::npos) {
-      plain += text[at];
+    if (text[position] != '[' || end == std::string::npos) {
+      plain += text[position];
       continue;
     }
-    plain += text.substr(at + 1, middle - at - 1);
-    at = end;
+    plain += text.substr(position + 1, middle - position - 1);
+    position = end;
   }
   return plain;
 }
 
-/// Merges annotations for tables into descriptions.
+/// Merges the annotations of each key into its description.
 ordered_json without_annotations(const ordered_json& node) {
   if (node.is_array()) {
     ordered_json list = ordered_json::array();
@@ -205,8 +206,8 @@ ordered_json without_annotations(const ordered_json& node) {
   return plain;
 }
 
-/// JSON whose lists and objects are on one line if they fit.
-std::string on_few_lines(const ordered_json& value, std::size_t indent) {
+/// JSON text with each list or object on one line if it fits.
+std::string compact_json(const ordered_json& value, std::size_t indent) {
   constexpr std::size_t kColumns = 100;
   const bool is_object = value.is_object();
   if (!value.is_structured() || value.empty()) return value.dump();
@@ -214,7 +215,7 @@ std::string on_few_lines(const ordered_json& value, std::size_t indent) {
   std::size_t length = indent;
   for (const auto& [key, inner] : value.items()) {
     const std::string name = is_object ? ordered_json(key).dump() + ": " : "";
-    parts.push_back(name + on_few_lines(inner, indent + 2));
+    parts.push_back(name + compact_json(inner, indent + 2));
     length += parts.back().size() + 2;
     if (parts.back().find('\n') != std::string::npos) length += kColumns;
   }
@@ -253,7 +254,7 @@ std::string annotated_schema(std::string_view title, std::string_view info,
 }
 
 std::string plain_schema(std::string_view annotated) {
-  return on_few_lines(without_annotations(ordered_json::parse(annotated)), 0) + "\n";
+  return compact_json(without_annotations(ordered_json::parse(annotated)), 0) + "\n";
 }
 
 }  // namespace touchtrial

@@ -26,26 +26,26 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kBegin = ".touchtrial-";
 constexpr std::string_view kEnd = ".tmp";
-constexpr int kToRead = O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
+constexpr int kReadFlags = O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
 
-[[noreturn]] void refuse_draft(const fs::path& place, int error) {
-  throw FileError(one_line(place.string()) + ": cannot be written (" +
+[[noreturn]] void refuse_draft(const fs::path& final_path, int error) {
+  throw FileError(one_line(final_path.string()) + ": cannot be written (" +
                   std::generic_category().message(error) +
                   "); check the folder, its permissions and the free space");
 }
 
-fs::path folder_of(const fs::path& place) {
-  return place.has_parent_path() ? place.parent_path() : fs::path(".");
+fs::path folder_of(const fs::path& final_path) {
+  return final_path.has_parent_path() ? final_path.parent_path() : fs::path(".");
 }
 
-fs::path new_name(const fs::path& place) {
-  static std::atomic<unsigned> made{0};
-  return place.parent_path() / (std::string(kBegin) + std::to_string(::getpid()) + "-" +
-                                std::to_string(made++) + std::string(kEnd));
+fs::path new_draft_path(const fs::path& final_path) {
+  static std::atomic<unsigned> count{0};
+  return final_path.parent_path() / (std::string(kBegin) + std::to_string(::getpid()) + "-" +
+                                     std::to_string(count++) + std::string(kEnd));
 }
 
-/// Two numbers between the beginning and the end.
-bool is_name_of_draft(std::string_view name) {
+/// Whether the name is ".touchtrial-PROCESS-NUMBER.tmp".
+bool is_draft_name(std::string_view name) {
   if (!name.starts_with(kBegin) || !name.ends_with(kEnd)) return false;
   if (name.size() <= kBegin.size() + kEnd.size()) return false;
   name = name.substr(kBegin.size(), name.size() - kBegin.size() - kEnd.size());
@@ -59,29 +59,29 @@ bool lock(int descriptor) {
   return ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
 }
 
-/// Removes a draft of this user whose process has ended.
+/// Removes this user's draft if its process has ended.
 void remove_if_stale(const fs::path& draft) {
-  const int descriptor = ::open(draft.c_str(), kToRead);
+  const int descriptor = ::open(draft.c_str(), kReadFlags);
   if (descriptor < 0) return;
   struct stat status {};
-  const bool is_own = ::fstat(descriptor, &status) == 0 && status.st_uid == ::geteuid();
-  if (is_own && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
+  const bool is_ours = ::fstat(descriptor, &status) == 0 && status.st_uid == ::geteuid();
+  if (is_ours && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
     std::error_code ignored;  // a leftover draft does no harm
     fs::remove_all(draft, ignored);
   }
   ::close(descriptor);
 }
 
-/// The first time in each folder.
+/// Does nothing for a folder that this process has cleaned before.
 void remove_stale_drafts(const fs::path& folder) {
   static std::mutex mutex;
-  static std::set<fs::path> seen;
+  static std::set<fs::path> cleaned_folders;
   std::error_code ignored;
   const std::lock_guard guard(mutex);
-  if (!seen.insert(fs::absolute(folder, ignored)).second) return;
+  if (!cleaned_folders.insert(fs::absolute(folder, ignored)).second) return;
   std::vector<fs::path> drafts;
   for (fs::directory_iterator entry(folder, ignored), end; entry != end; entry.increment(ignored)) {
-    if (is_name_of_draft(entry->path().filename().string())) drafts.push_back(entry->path());
+    if (is_draft_name(entry->path().filename().string())) drafts.push_back(entry->path());
   }
   for (const fs::path& draft : drafts) remove_if_stale(draft);
 }
@@ -105,21 +105,21 @@ void sync_folder(const fs::path& folder) noexcept {
   ::close(descriptor);
 }
 
-Draft::Draft(fs::path place, Kind kind, FileMode mode) : place_(std::move(place)) {
-  remove_stale_drafts(folder_of(place_));
+Draft::Draft(fs::path final_path, Kind kind, FileMode mode) : final_path_(std::move(final_path)) {
+  remove_stale_drafts(folder_of(final_path_));
   while (!make(kind, mode)) {
   }
 }
 
 /// \return false if the name exists already, or another process removed the draft as stale
 bool Draft::make(Kind kind, FileMode mode) {
-  path_ = new_name(place_);
+  path_ = new_draft_path(final_path_);
   if (kind == Kind::folder) {
     if (::mkdir(path_.c_str(), 0777) != 0) {
       if (errno == EEXIST) return false;
-      refuse_draft(place_, errno);
+      refuse_draft(final_path_, errno);
     }
-    descriptor_ = ::open(path_.c_str(), kToRead | O_DIRECTORY);
+    descriptor_ = ::open(path_.c_str(), kReadFlags | O_DIRECTORY);
   } else {
     descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
                          mode == FileMode::owner_only ? 0600 : 0644);
@@ -129,7 +129,7 @@ bool Draft::make(Kind kind, FileMode mode) {
     if (error == EEXIST || (error == ENOENT && kind == Kind::folder)) return false;
     std::error_code ignored;
     if (kind == Kind::folder) fs::remove(path_, ignored);
-    refuse_draft(place_, error);
+    refuse_draft(final_path_, error);
   }
   struct stat status {};
   if (lock(descriptor_) && ::fstat(descriptor_, &status) == 0 && status.st_nlink > 0) return true;
@@ -148,20 +148,20 @@ void Draft::write(ByteView content) const {
   while (!content.empty()) {
     const ssize_t written = ::write(descriptor_, content.data(), content.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) refuse_draft(place_, errno);
+    if (written < 0) refuse_draft(final_path_, errno);
     content = content.subspan(static_cast<std::size_t>(written));
   }
-  if (::fsync(descriptor_) != 0) refuse_draft(place_, errno);
+  if (::fsync(descriptor_) != 0) refuse_draft(final_path_, errno);
 }
 
 void Draft::replace() {
-  if (std::rename(path_.c_str(), place_.c_str()) != 0) refuse_draft(place_, errno);
+  if (std::rename(path_.c_str(), final_path_.c_str()) != 0) refuse_draft(final_path_, errno);
   path_.clear();
-  sync_folder(place_.parent_path());
+  sync_folder(final_path_.parent_path());
 }
 
 bool Draft::rename_if_free() {
-  if (!move_to_free_name(path_, place_)) return false;
+  if (!move_to_free_name(path_, final_path_)) return false;
   path_.clear();
   return true;
 }

@@ -1,4 +1,4 @@
-/// \file The errors that a user can cause or meet. Each is one line: what, where, remedy.
+/// \file Errors reported to the user. Each message is one line: what failed, where, the remedy.
 #pragma once
 
 #include <stdexcept>
@@ -6,8 +6,8 @@
 
 namespace touchtrial {
 
-/// Base of errors that the program survives. `what()` is one line of UTF-8: what failed, where, the
-/// remedy, and a code in brackets, [unsigned-look], where errors are easily confused.
+/// Base class. `what()` is one line of UTF-8. Messages that are easily confused end with a code in
+/// brackets, for instance [unsigned-look].
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -44,7 +44,7 @@ class DeviceError : public Error {
   using Error::Error;
 };
 
-/// Evidence fails its check: a broken chain, seal, key, pack or schedule. Exit code 3.
+/// Evidence fails verification: a chain, seal, key, pack or schedule. Exit code 3.
 class VerificationError : public Error {
  public:
   using Error::Error;

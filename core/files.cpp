@@ -17,9 +17,9 @@
 namespace touchtrial {
 namespace {
 
-[[noreturn]] void fail(const std::filesystem::path& path, const std::string& what, int error,
+[[noreturn]] void fail(const std::filesystem::path& path, const std::string& fault, int error,
                        const std::string& remedy) {
-  throw FileError(one_line(path.string()) + ": " + what + " (" +
+  throw FileError(one_line(path.string()) + ": " + fault + " (" +
                   std::generic_category().message(error) + "); " + remedy);
 }
 
@@ -39,7 +39,8 @@ class Descriptor {
   int number_;
 };
 
-/// For file systems without an exclusive rename: an empty file or folder claims the name first.
+/// Renames on a file system without an exclusive rename: claims the new name with an empty file or
+/// folder first.
 /// \return 0, or -1 with errno
 int claim_and_rename(const std::filesystem::path& file, const std::filesystem::path& name) {
   std::error_code ignored;
@@ -106,10 +107,10 @@ void rename_file(const std::filesystem::path& file, const std::filesystem::path&
 }
 
 bool move_to_free_name(const std::filesystem::path& file, const std::filesystem::path& name) {
-  int failed = ::renameat2(AT_FDCWD, file.c_str(), AT_FDCWD, name.c_str(), RENAME_NOREPLACE);
-  if (failed != 0 && (errno == EINVAL || errno == ENOSYS)) failed = claim_and_rename(file, name);
-  if (failed != 0 && errno == EEXIST) return false;
-  if (failed != 0) {
+  int result = ::renameat2(AT_FDCWD, file.c_str(), AT_FDCWD, name.c_str(), RENAME_NOREPLACE);
+  if (result != 0 && (errno == EINVAL || errno == ENOSYS)) result = claim_and_rename(file, name);
+  if (result != 0 && errno == EEXIST) return false;
+  if (result != 0) {
     fail(name, "cannot be made", errno, "check the folder, its permissions and the free space");
   }
   sync_folder(name.parent_path());
@@ -119,7 +120,7 @@ bool move_to_free_name(const std::filesystem::path& file, const std::filesystem:
 void require_owner_only(const std::filesystem::path& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) {
-    fail(path, "cannot be read", errno, "check that it is there, and its permissions");
+    fail(path, "cannot be read", errno, "check that it exists and its permissions");
   }
   if ((status.st_mode & 077U) == 0) return;
   throw FileError(one_line(path.string() +
@@ -137,7 +138,7 @@ void make_folder(const std::filesystem::path& folder) {
                   "); give another path, or change the permissions");
 }
 
-bool is_there(const std::filesystem::path& path) noexcept {
+bool path_exists(const std::filesystem::path& path) noexcept {
   std::error_code ignored;
   return std::filesystem::exists(path, ignored);
 }
@@ -151,9 +152,9 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
     throw FileError(one_line(path.string()) + ": is empty or not a file; create it again");
   }
   size_ = static_cast<std::size_t>(status.st_size);
-  void* mapped = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file.number(), 0);
-  if (mapped == MAP_FAILED) fail(path, "cannot be mapped", errno, "check the free memory");
-  data_ = static_cast<const std::uint8_t*>(mapped);
+  void* mapping = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file.number(), 0);
+  if (mapping == MAP_FAILED) fail(path, "cannot be mapped", errno, "check the free memory");
+  data_ = static_cast<const std::uint8_t*>(mapping);
 }
 
 MappedFile::~MappedFile() {
@@ -169,7 +170,8 @@ MappedFile& MappedFile::operator=(MappedFile&& other) noexcept {
   return *this;
 }
 
-std::filesystem::path beside_database(const std::filesystem::path& database, const char* suffix) {
+std::filesystem::path database_companion(const std::filesystem::path& database,
+                                         const char* suffix) {
   std::error_code error;
   const bool is_link = std::filesystem::is_symlink(database, error);
   std::filesystem::path path = is_link ? std::filesystem::weakly_canonical(database) : database;

@@ -19,35 +19,35 @@ enum class FileMode { everyone, owner_only };
 [[nodiscard]] Bytes read_file(const std::filesystem::path& path,
                               std::uintmax_t limit_bytes = std::uintmax_t{1} << 32U);
 
-/// For files whose names belong to the program, such as keys; core/outputs.hpp writes the others.
 /// Writes a draft, syncs it, and renames it over the target: after a crash the file has its old or
-/// its new content, never half of it. Refuses links, devices and pipes.
+/// its new content, never a part of it. Refuses links, devices and pipes. Use it for files whose
+/// names the program chooses, such as keys, and core/outputs.hpp for files that the user names.
 /// \throws FileError with the system's reason
 void replace_file(const std::filesystem::path& path, ByteView content,
                   FileMode mode = FileMode::everyone);
 void replace_file(const std::filesystem::path& path, std::string_view content,
                   FileMode mode = FileMode::everyone);
 
-/// Refuses a file of secrets that others may read.
-/// \throws FileError with the remedy if the group or others have any right to it, or it is missing
+/// Checks that only its owner can access a file of secrets.
+/// \throws FileError with the remedy if group or others have any permission, or it is missing
 void require_owner_only(const std::filesystem::path& path);
 
 /// Creates a folder and its missing parents.
 /// \throws FileError if the folder does not exist afterwards
 void make_folder(const std::filesystem::path& folder);
 
-/// Renames a complete file, over one that has the new name, and syncs the folder.
+/// Renames a complete file, replacing any file of the new name, and syncs the folder.
 /// \throws FileError with the system's reason
 void rename_file(const std::filesystem::path& file, const std::filesystem::path& name);
 
-/// Renames a complete file, unless something already has the new name, and syncs the folder.
+/// Renames a complete file unless the new name is taken, and syncs the folder.
 /// \return whether the name was free
 /// \throws FileError with the system's reason
 [[nodiscard]] bool move_to_free_name(const std::filesystem::path& file,
                                      const std::filesystem::path& name);
 
 /// Whether the path exists; also false if access is denied.
-[[nodiscard]] bool is_there(const std::filesystem::path& path) noexcept;
+[[nodiscard]] bool path_exists(const std::filesystem::path& path) noexcept;
 
 /// A file mapped read-only: only pages that are accessed are read from disk.
 class MappedFile {
@@ -66,8 +66,8 @@ class MappedFile {
   std::size_t size_ = 0;
 };
 
-/// The file of this name beside a database; links to the database are followed first.
-[[nodiscard]] std::filesystem::path beside_database(const std::filesystem::path& database,
-                                                    const char* suffix);
+/// The path of a database, with links resolved, plus `suffix`.
+[[nodiscard]] std::filesystem::path database_companion(const std::filesystem::path& database,
+                                                       const char* suffix);
 
 }  // namespace touchtrial

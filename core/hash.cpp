@@ -22,7 +22,7 @@ std::array<std::uint8_t, 8> little_endian(std::uint64_t number) {
   return bytes;
 }
 
-/// SHA-256 by Nettle, which uses the processor's instructions for it.
+/// Computes SHA-256 with Nettle, which uses the processor's SHA instructions.
 class Sha256 {
  public:
   Sha256() { sha256_init(&context_); }
@@ -62,8 +62,8 @@ Digest sha256_of_file(const std::filesystem::path& path) {
   std::vector<char> block(std::size_t{1} << 16);
   while (file) {
     file.read(block.data(), static_cast<std::streamsize>(block.size()));
-    const auto got = static_cast<std::size_t>(file.gcount());
-    hash.add({reinterpret_cast<const std::uint8_t*>(block.data()), got});
+    const auto count = static_cast<std::size_t>(file.gcount());
+    hash.add({reinterpret_cast<const std::uint8_t*>(block.data()), count});
   }
   if (file.bad()) throw FileError(one_line(path.string()) + ": reading failed; check the disk");
   return hash.finish();
@@ -123,9 +123,9 @@ Digest keyed_hash(const Digest& key, ByteView bytes) {
 std::optional<Digest> digest_from_hex(std::string_view hex) {
   Digest digest{};
   if (hex.size() != 2 * digest.size()) return std::nullopt;
-  const int failed = sodium_hex2bin(digest.data(), digest.size(), hex.data(), hex.size(), nullptr,
+  const int status = sodium_hex2bin(digest.data(), digest.size(), hex.data(), hex.size(), nullptr,
                                     nullptr, nullptr);
-  if (failed != 0) return std::nullopt;
+  if (status != 0) return std::nullopt;
   return digest;
 }
 

@@ -1,6 +1,6 @@
-/// \file SHA-256 for seals and checksums that other programs check too; BLAKE2b, several times as
-/// fast, for chains and traces, and with a key for tags that only its holder can compute. Both by
-/// libsodium. All functions are thread-safe.
+/// \file Hash functions. Seals and checksums use SHA-256, so that other programs can verify them.
+/// Chains and traces use BLAKE2b, which is several times as fast. Keyed BLAKE2b gives tags that
+/// only the holder of the key can compute. All functions are thread-safe.
 #pragma once
 
 #include "core/bytes.hpp"
@@ -28,7 +28,7 @@ using Digest = std::array<std::uint8_t, 32>;
 enum class HashFunction { sha256, blake2b };
 
 /// Hash over a sequence of fields. Each field is preceded by its length in eight little-endian
-/// bytes, so that two different sequences never give the same input.
+/// bytes, so different sequences never give the same input.
 class FieldHasher {
  public:
   explicit FieldHasher(HashFunction function = HashFunction::sha256);

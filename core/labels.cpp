@@ -11,8 +11,8 @@
 namespace touchtrial {
 namespace {
 
-/// Takes the first character off a text.
-/// \return its code point; negative if it is not UTF-8, and the text is then empty
+/// Removes the first character of a text.
+/// \return its code point; negative if it is not UTF-8, and `text` is then empty
 utf8proc_int32_t take_character(std::string_view& text) {
   utf8proc_int32_t character = -1;
   const utf8proc_ssize_t size =
@@ -22,8 +22,8 @@ utf8proc_int32_t take_character(std::string_view& text) {
   return character;
 }
 
-/// A letter without its accents, and without a capital.
-utf8proc_int32_t plain(utf8proc_int32_t letter) {
+/// The lower-case letter without accents.
+utf8proc_int32_t base_letter(utf8proc_int32_t letter) {
   std::array<utf8proc_int32_t, 8> parts{letter};
   static_cast<void>(
       utf8proc_decompose_char(letter, parts.data(), parts.size(), UTF8PROC_DECOMPOSE, nullptr));
@@ -51,10 +51,10 @@ Alphabets alphabets_of(std::string_view text) {
       word = {};
       continue;
     }
-    (plain(character) < kFirstAfterLatin ? word.latin : word.other) = true;
+    (base_letter(character) < kFirstAfterLatin ? word.latin : word.non_latin) = true;
     all.latin |= word.latin;
-    all.other |= word.other;
-    all.one_word_has_both |= word.latin && word.other;
+    all.non_latin |= word.non_latin;
+    all.mixed_in_one_word |= word.latin && word.non_latin;
   }
   return all;
 }
@@ -81,9 +81,9 @@ std::string fault_of_label(const std::string& label) {
   }
   if (has_control_character(label)) return "has a control character";
   if (label.front() == ' ' || label.back() == ' ') return "begins or ends with a blank";
-  if (is_read_as_missing(label)) return "is what other programs take for a missing or truth value";
+  if (is_read_as_missing(label)) return "is read by other programs as a missing or truth value";
   if (begins_like_formula(label)) return "begins like a formula";
-  if (alphabets_of(label).one_word_has_both) {
+  if (alphabets_of(label).mixed_in_one_word) {
     return "mixes Latin letters with those of another alphabet in one word";
   }
   return "";
@@ -91,18 +91,18 @@ std::string fault_of_label(const std::string& label) {
 
 std::string remark_on_alphabets(const std::vector<std::string>& labels) {
   std::vector<std::string> latin;
-  std::vector<std::string> other;
+  std::vector<std::string> non_latin;
   for (const std::string& label : labels) {
     const Alphabets alphabets = alphabets_of(label);
     if (alphabets.latin) latin.push_back(in_quotes(label));
-    if (alphabets.other) other.push_back(in_quotes(label));
+    if (alphabets.non_latin) non_latin.push_back(in_quotes(label));
   }
-  if (latin.empty() || other.empty()) return "";
-  return "labels have Latin letters (" + first_of(latin) + ") and others (" + first_of(other) +
-         "); look whether any two look alike, and rename one";
+  if (latin.empty() || non_latin.empty()) return "";
+  return "labels have Latin letters (" + first_and_count(latin) + ") and others (" +
+         first_and_count(non_latin) + "); check whether any two look alike, and rename one";
 }
 
-std::string first_of(const std::vector<std::string>& texts) {
+std::string first_and_count(const std::vector<std::string>& texts) {
   const std::size_t more = texts.size() - 1;
   return one_line(texts.front()) + (more > 0 ? " and " + std::to_string(more) + " more" : "");
 }

@@ -1,4 +1,4 @@
-/// \file Which labels are allowed, so that tables, screens and other programs can show them.
+/// \file Rules for labels, so that tables, screens and other programs can show them.
 #pragma once
 
 #include <string>
@@ -9,28 +9,30 @@ namespace touchtrial {
 
 [[nodiscard]] bool is_utf8(std::string_view text);
 
-/// Which alphabets the letters of a text belong to; only alphabets with capitals have look-alikes.
+/// The alphabets of a text's letters. Only alphabets with capitals count, because only they have
+/// look-alikes.
 struct Alphabets {
   bool latin = false;
-  bool other = false;              ///< Greek, Cyrillic, ...
-  bool one_word_has_both = false;  ///< so that readers cannot distinguish them
+  bool non_latin = false;          ///< Greek, Cyrillic, ...
+  bool mixed_in_one_word = false;  ///< one word has both, which may mislead a reader
 };
 
 [[nodiscard]] Alphabets alphabets_of(std::string_view text);
 
-/// Whether a text contains a C0 character (line feeds and tabs included), DEL, or a C1 character.
+/// Whether a text contains a control character: C0 (including line feed and tab), DEL or C1.
 [[nodiscard]] bool has_control_character(std::string_view text);
 
-/// Why tables, screens and other programs could not show a text as the label of a class: the rest
-/// of a sentence that starts with the label; empty if they can. A label has 1 to 64 bytes.
+/// Checks the label of a class; valid labels have 1 to 64 bytes.
+/// \return the fault, a phrase that follows the label in a message; empty if there is none
 [[nodiscard]] std::string fault_of_label(const std::string& label);
 
-/// A remark if some labels of a study have Latin letters and others those of another alphabet,
-/// because skeleton_of knows only some of the look-alikes; else empty.
+/// Checks whether labels of a study use different alphabets, because skeleton_of() recognises only
+/// some look-alikes.
+/// \return a remark, or empty
 [[nodiscard]] std::string remark_on_alphabets(const std::vector<std::string>& labels);
 
-/// Several texts in short: the first, and how many more there are.
+/// Abbreviates several texts: "first and 2 more".
 /// \param texts  at least one
-[[nodiscard]] std::string first_of(const std::vector<std::string>& texts);
+[[nodiscard]] std::string first_and_count(const std::vector<std::string>& texts);
 
 }  // namespace touchtrial

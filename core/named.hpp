@@ -1,4 +1,4 @@
-/// \file Words for the values of an enumeration: one table for each, read both ways. A table is
+/// \file Names of enumeration values: one table per enumeration, searched by name or by value, as
 /// `std::to_array<Named<Value>>({{"word", value}, ..})`.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace touchtrial {
 
-/// A word of a file or of a command, and its meaning.
+/// A word used in files or commands, and the value it stands for.
 template <typename Value>
 struct Named {
   std::string_view name;

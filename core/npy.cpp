@@ -16,7 +16,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "samples are written in memory order");
 
 constexpr std::string_view kMagic("\x93NUMPY", 6);
-constexpr std::size_t kAlignment = 64;  // of the data, in bytes; the format prescribes it
+constexpr std::size_t kAlignment = 64;  // bytes, prescribed by the format
 
 template <typename Sample>
 constexpr std::string_view descr() {
@@ -34,10 +34,10 @@ std::string shape_text(const std::vector<int>& shape) {
 Bytes header_of(std::string_view type, const std::vector<int>& shape) {
   std::string dictionary = "{'descr': '" + std::string(type) +
                            "', 'fortran_order': False, 'shape': " + shape_text(shape) + ", }";
-  const std::size_t fixed = kMagic.size() + 4;
-  const std::size_t total =
-      (fixed + dictionary.size() + 1 + kAlignment - 1) / kAlignment * kAlignment;
-  dictionary.resize(total - fixed - 1, ' ');
+  const std::size_t fixed_size = kMagic.size() + 4;
+  const std::size_t total_size =
+      (fixed_size + dictionary.size() + 1 + kAlignment - 1) / kAlignment * kAlignment;
+  dictionary.resize(total_size - fixed_size - 1, ' ');
   dictionary += '\n';
   Bytes header(kMagic.begin(), kMagic.end());
   header.push_back(1);
@@ -54,8 +54,8 @@ template <typename Sample>
 void write_npy(const std::filesystem::path& path, std::span<const Sample> samples,
                const std::vector<int>& shape) {
   Bytes content = header_of(descr<Sample>(), shape);
-  const auto* raw = reinterpret_cast<const std::uint8_t*>(samples.data());
-  content.insert(content.end(), raw, raw + samples.size_bytes());
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(samples.data());
+  content.insert(content.end(), bytes, bytes + samples.size_bytes());
   write_output(path, ByteView(content));
 }
 

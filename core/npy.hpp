@@ -11,7 +11,7 @@ namespace touchtrial {
 
 /// Writes an array. Sample is std::uint8_t, float or double.
 /// \param shape  its product is the number of samples
-/// \throws as write_output
+/// \throws FileError under the conditions of write_output
 template <typename Sample>
 void write_npy(const std::filesystem::path& path, std::span<const Sample> samples,
                const std::vector<int>& shape);

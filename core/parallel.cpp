@@ -15,14 +15,14 @@ void in_parallel(int jobs, std::size_t count, const std::function<void(std::size
     for (std::size_t i = 0; i < count; ++i) work(i);
     return;
   }
-  const auto all = [&] { tbb::parallel_for(std::size_t{0}, count, work); };
-  if (jobs == 0) return all();
-  // Limited to the cores available to this process: oneTBB warns if asked for more.
+  const auto run_all = [&] { tbb::parallel_for(std::size_t{0}, count, work); };
+  if (jobs == 0) return run_all();
+  // oneTBB prints a warning if the limit exceeds the cores available to this process.
   tbb::task_arena arena(std::min(jobs, tbb::info::default_concurrency()));
-  arena.execute(all);
+  arena.execute(run_all);
 }
 
-void all_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work) {
+void run_all_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work) {
   std::vector<std::exception_ptr> failures(count);
   in_parallel(0, count, [&](std::size_t i) {
     try {

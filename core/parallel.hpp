@@ -1,4 +1,4 @@
-/// \file Work on several threads.
+/// \file Runs work on several threads.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@ namespace touchtrial {
 /// \throws what a call throws; the remaining calls may then be skipped
 void in_parallel(int jobs, std::size_t count, const std::function<void(std::size_t)>& work);
 
-/// The same on all cores, for work that can fail: all calls are made, and the exception of the
-/// lowest i is thrown, for any number of threads.
-void all_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work);
+/// Calls work(i) on all cores, for work that can fail. Makes all calls, then throws the exception
+/// of the lowest i, so the error does not depend on the number of threads.
+void run_all_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work);
 
 }  // namespace touchtrial

@@ -24,10 +24,10 @@ SecretKey key_of_passphrase(std::string_view passphrase, const Salt& salt,
   }
   if (!prepare_sodium()) throw std::runtime_error("libsodium cannot be used");
   SecretKey key{};
-  const int failed =
+  const int status =
       crypto_pwhash(key.data(), key.size(), passphrase.data(), passphrase.size(), salt.data(),
                     cost.passes, cost.memory_bytes, crypto_pwhash_ALG_ARGON2ID13);
-  if (failed != 0) throw std::bad_alloc();
+  if (status != 0) throw std::bad_alloc();
   return key;
 }
 

@@ -1,5 +1,5 @@
-/// \file Derives a key from a passphrase with Argon2id (RFC 9106) by libsodium. It takes time and
-///   memory on purpose: an attacker needs both for each guess. All functions are thread-safe.
+/// \file Derives a key from a passphrase with Argon2id (RFC 9106) by libsodium. It costs time and
+/// memory on purpose, because an attacker pays both for each guess. All functions are thread-safe.
 #pragma once
 
 #include "core/cipher.hpp"
@@ -10,10 +10,10 @@
 
 namespace touchtrial {
 
-/// Random bytes in clear, so that one passphrase gives different keys.
+/// Random bytes, stored unencrypted, so that equal passphrases give different keys.
 using Salt = std::array<std::uint8_t, 16>;
 
-/// What one key costs.
+/// The cost of deriving one key.
 struct PassphraseCost {
   std::uint64_t passes = 3;
   std::uint64_t memory_bytes = std::uint64_t{256} << 20U;

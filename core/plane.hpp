@@ -1,4 +1,4 @@
-/// \file An owning row-major image of any sample type.
+/// \file Images with samples of any type.
 #pragma once
 
 #include <algorithm>
@@ -67,15 +67,15 @@ using GreyImage = Plane<std::uint8_t>;
 
 /// The plane with every sample converted, for instance from grey levels to double.
 template <typename To, typename From>
-[[nodiscard]] Plane<To> converted(const Plane<From>& from) {
-  Plane<To> to(from.height(), from.width());
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    to.samples()[i] = static_cast<To>(from.samples()[i]);
+[[nodiscard]] Plane<To> converted(const Plane<From>& source) {
+  Plane<To> result(source.height(), source.width());
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    result.samples()[i] = static_cast<To>(source.samples()[i]);
   }
-  return to;
+  return result;
 }
 
-/// A temporary plane of the wanted type is moved.
+/// Moves a temporary plane that already has the requested type.
 template <typename Sample>
 [[nodiscard]] Plane<Sample> converted(Plane<Sample>&& plane) {
   return std::move(plane);

@@ -5,8 +5,8 @@
 
 namespace touchtrial {
 
-/// How an image lies on the virtual plane. The centre of pixel (x, y) is at
-/// ((x + 0.5) * pitch, (y + 0.5) * pitch) mm from the plane's top-left corner; y runs towards the
+/// The placement of an image on the virtual plane. The centre of pixel (x, y) is at
+/// ((x + 0.5) * pitch, (y + 0.5) * pitch) mm from the plane's top-left corner; y points towards the
 /// participant on a horizontal plane, downwards on a vertical one.
 struct PlaneGeometry {
   double pitch_mm = 0.2;  ///< millimetres per pixel, > 0

@@ -7,8 +7,8 @@
 namespace touchtrial {
 namespace {
 
-unsigned byte_at(std::string_view text, std::size_t at) {
-  return static_cast<unsigned char>(text[at]);
+unsigned byte_at(std::string_view text, std::size_t index) {
+  return static_cast<unsigned char>(text[index]);
 }
 
 /// A range of lead bytes, and the range of second bytes that may follow them. All other pairs are
@@ -29,34 +29,34 @@ constexpr std::array<LeadBytes, 9> kLeadBytes = {{{0x00, 0x7f, 0, 0, 1},
                                                   {0xf1, 0xf3, 0x80, 0xbf, 4},
                                                   {0xf4, 0xf4, 0x80, 0x8f, 4}}};
 
-bool continues(std::string_view rest, const LeadBytes& lead) {
-  if (rest.size() < lead.length) return false;
+bool has_valid_tail(std::string_view text, const LeadBytes& lead) {
+  if (text.size() < lead.length) return false;
   if (lead.length == 1) return true;
-  const unsigned second = byte_at(rest, 1);
+  const unsigned second = byte_at(text, 1);
   if (second < lead.second_first || second > lead.second_last) return false;
   for (std::size_t i = 2; i < lead.length; ++i) {
-    if ((byte_at(rest, i) & 0xc0U) != 0x80U) return false;
+    if ((byte_at(text, i) & 0xc0U) != 0x80U) return false;
   }
   return true;
 }
 
-/// \return the length in bytes of the character at the start of `rest`; 0 if it is not UTF-8
-std::size_t character_length(std::string_view rest) {
-  const unsigned first = byte_at(rest, 0);
+/// \return the length in bytes of the character at the start of `text`; 0 if it is not UTF-8
+std::size_t character_length(std::string_view text) {
+  const unsigned first = byte_at(text, 0);
   for (const LeadBytes& lead : kLeadBytes) {
     if (first < lead.first || first > lead.last) continue;
-    return continues(rest, lead) ? lead.length : 0;
+    return has_valid_tail(text, lead) ? lead.length : 0;
   }
   return 0;
 }
 
 constexpr std::string_view kDigits = "0123456789abcdef";
 
-std::string escaped(unsigned byte) {
+std::string escaped_byte(unsigned byte) {
   return {'\\', 'x', kDigits[byte >> 4U], kDigits[byte & 0xfU]};
 }
 
-/// "\u202e", as in JSON.
+/// Formats a code unit as in JSON: "\u202e".
 std::string escaped_unit(unsigned code) {
   return {'\\',
           'u',
@@ -68,18 +68,18 @@ std::string escaped_unit(unsigned code) {
 
 /// The code of a character of at most three bytes.
 unsigned code_of(std::string_view character) {
-  const auto rest = [&](std::size_t at) { return byte_at(character, at) & 0x3fU; };
+  const auto low_bits = [&](std::size_t index) { return byte_at(character, index) & 0x3fU; };
   if (character.size() == 1) return byte_at(character, 0);
-  if (character.size() == 2) return (byte_at(character, 0) & 0x1fU) << 6U | rest(1);
-  return (byte_at(character, 0) & 0x0fU) << 12U | rest(1) << 6U | rest(2);
+  if (character.size() == 2) return (byte_at(character, 0) & 0x1fU) << 6U | low_bits(1);
+  return (byte_at(character, 0) & 0x0fU) << 12U | low_bits(1) << 6U | low_bits(2);
 }
 
 bool is_control(unsigned code) {
   return code < 0x20 || code == 0x7f;
 }
 
-/// A control of the second set (U+0080 to U+009F), which some terminals obey; a separator of lines;
-/// or a control of direction, which shows text in another order than it has (Unicode 15, 23.2).
+/// Whether the code is a C1 control (U+0080 to U+009F), which some terminals obey; a line
+/// separator; or a bidirectional control, which changes the display order (Unicode 15, 23.2).
 bool is_misleading(unsigned code) {
   return (code >= 0x80 && code < 0xa0) || code == 0x61c || code == 0x200e || code == 0x200f ||
          (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
@@ -101,7 +101,7 @@ std::string printable(std::string_view text, Controls controls) {
     const std::size_t length = character_length(text);
     const unsigned code = length == 0 || length > 3 ? 0x20U : code_of(text.substr(0, length));
     if (length == 0) {
-      clean += escaped(byte_at(text, 0));
+      clean += escaped_byte(byte_at(text, 0));
     } else if (is_control(code)) {
       clean += shown_control(code, controls);
     } else if (is_misleading(code)) {

@@ -12,7 +12,7 @@ namespace {
 
 using BoxNonce = std::array<std::uint8_t, crypto_box_NONCEBYTES>;
 
-/// Each ephemeral key seals one message, so that a nonce that follows from the keys never repeats.
+/// Derives the nonce from the keys. It never repeats, because each ephemeral key seals one message.
 BoxNonce nonce_of(const PublicKey& ephemeral, const PublicKey& receiver, std::string_view context) {
   const Digest identity = FieldHasher().add(ephemeral).add(receiver).add(context).finish();
   BoxNonce nonce{};
@@ -35,10 +35,10 @@ Bytes seal_box(const PublicKey& receiver, std::string_view context, ByteView pla
   const BoxNonce nonce = nonce_of(sender.public_half, receiver, context);
   Bytes box(sender.public_half.begin(), sender.public_half.end());
   box.resize(box.size() + crypto_box_MACBYTES + plaintext.size());
-  const int failed =
+  const int status =
       crypto_box_easy(box.data() + sender.public_half.size(), plaintext.data(), plaintext.size(),
                       nonce.data(), receiver.data(), sender.secret_half.data());
-  if (failed != 0) throw std::invalid_argument("seal_box: invalid public key");
+  if (status != 0) throw std::invalid_argument("seal_box: invalid public key");
   return box;
 }
 
@@ -50,9 +50,9 @@ std::optional<Bytes> open_box(const BoxKeys& receiver, std::string_view context,
   const BoxNonce nonce = nonce_of(sender, receiver.public_half, context);
   const ByteView sealed = box.subspan(sender.size());
   Bytes plaintext(sealed.size() - crypto_box_MACBYTES);
-  const int failed = crypto_box_open_easy(plaintext.data(), sealed.data(), sealed.size(),
+  const int status = crypto_box_open_easy(plaintext.data(), sealed.data(), sealed.size(),
                                           nonce.data(), sender.data(), receiver.secret_half.data());
-  if (failed != 0) return std::nullopt;
+  if (status != 0) return std::nullopt;
   return plaintext;
 }
 

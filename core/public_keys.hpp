@@ -1,5 +1,6 @@
-/// \file Keys in two halves: what one half seals or signs, the other opens or verifies. X25519 with
-/// XSalsa20-Poly1305 (crypto_box) and Ed25519, both by libsodium. All functions are thread-safe.
+/// \file Public-key sealing and signing: one half of a key pair opens or verifies what the other
+/// half sealed or signed. X25519 with XSalsa20-Poly1305 (crypto_box) and Ed25519, both by
+/// libsodium. All functions are thread-safe.
 #pragma once
 
 #include "core/cipher.hpp"
@@ -18,7 +19,7 @@ struct BoxKeys {
   SecretKey secret_half{};
 };
 
-/// The keys that follow from a seed.
+/// Derives the keys from a seed.
 [[nodiscard]] BoxKeys box_keys(const SecretKey& seed);
 
 /// Seals a text for the holder of the secret half; the sealer cannot open it again.
@@ -33,10 +34,10 @@ struct BoxKeys {
 
 using Signature = std::array<std::uint8_t, 64>;
 
-/// Signs; the public half verifies.
+/// Signs messages, which anyone can verify with the public half.
 class Signer {
  public:
-  /// The keys that follow from a seed.
+  /// Derives the keys from a seed.
   explicit Signer(const SecretKey& seed);
 
   [[nodiscard]] const PublicKey& public_half() const noexcept { return public_half_; }

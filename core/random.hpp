@@ -12,15 +12,15 @@
 namespace touchtrial {
 
 /// A stream of random numbers. The engine is std::mt19937_64, whose output the C++ standard fixes;
-/// the distributions are ours or Boost.Random's, because those of the standard library differ
-/// between implementations. Not thread-safe; give each thread a stream of its own.
+/// the distributions are this program's or Boost.Random's, because the standard library's differ
+/// between implementations. Not thread-safe; give each thread its own stream.
 class RandomStream {
  public:
   /// Each (seed, purpose, index) gives a different stream. Streams of different purposes are
   /// unrelated, so an additional draw from one leaves the others unchanged.
   RandomStream(std::uint64_t seed, std::string_view purpose, std::uint64_t index = 0);
-  /// The same from 32 secret bytes in place of a seed, for draws that must be unpredictable. Seeded
-  /// with 256 bits; draws of one stream reveal nothing about another.
+  /// The same from 32 secret bytes instead of a seed, for draws that must be unpredictable. Draws
+  /// of one stream reveal nothing about another.
   RandomStream(const Digest& secret, std::string_view purpose, std::uint64_t index = 0);
 
   /// The next 64 random bits.
@@ -29,8 +29,8 @@ class RandomStream {
   /// A whole number in [0, bound), each equally likely (by rejection).
   /// \param bound  >= 1
   [[nodiscard]] std::uint64_t below(std::uint64_t bound) {
-    // The lowest 2^64 mod bound draws are rejected, so that every number is equally likely. They
-    // are less than bound, so that few draws need this division.
+    // Rejects the lowest 2^64 mod bound draws, so that every number is equally likely. That count
+    // is less than bound, so a draw >= bound needs no check, and few draws need the first division.
     std::uint64_t draw = bits();
     if (draw < bound) {
       const std::uint64_t excess = (0 - bound) % bound;
@@ -54,8 +54,8 @@ class RandomStream {
 /// Shuffles the elements; every order is equally likely (Fisher-Yates, from the back).
 template <typename T>
 void shuffle(std::span<T> elements, RandomStream& random) {
-  for (std::size_t left = elements.size(); left > 1; --left) {
-    std::swap(elements[left - 1], elements[static_cast<std::size_t>(random.below(left))]);
+  for (std::size_t count = elements.size(); count > 1; --count) {
+    std::swap(elements[count - 1], elements[static_cast<std::size_t>(random.below(count))]);
   }
 }
 

@@ -39,11 +39,11 @@ std::string escaped_token(std::string_view token) {
 }
 
 [[noreturn]] void refuse_at(const std::string& source, const std::string& place,
-                            const std::string& what) {
-  throw StudyError(one_line(source + ": " + (place.empty() ? "/" : place) + ": " + what));
+                            const std::string& fault) {
+  throw StudyError(one_line(source + ": " + (place.empty() ? "/" : place) + ": " + fault));
 }
 
-/// Follows the parser and tracks its position in the document.
+/// Tracks the parser's position in the document.
 class PlaceTracker {
  public:
   explicit PlaceTracker(const std::string& source) : source_(source) {}
@@ -83,7 +83,7 @@ class PlaceTracker {
     Level& level = levels_.back();
     level.key = key;
     if (!level.keys.insert(key).second) {
-      refuse_at(source_, pointer(), "is there twice; keep one of the two");
+      refuse_at(source_, pointer(), "appears twice; keep one of the two");
     }
   }
 
@@ -91,35 +91,35 @@ class PlaceTracker {
   std::vector<Level> levels_;
 };
 
-/// \param at  the byte, from 0
-[[noreturn]] void refuse_byte(std::string_view text, std::size_t at, const std::string& source,
-                              const std::string& what) {
-  const std::string_view before = text.substr(0, at);
-  const auto line = std::count(before.begin(), before.end(), '\n') + 1;
-  const std::size_t column = at - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0
+[[noreturn]] void refuse_byte(std::string_view text, std::size_t byte_index,
+                              const std::string& source, const std::string& fault) {
+  const std::string_view preceding_text = text.substr(0, byte_index);
+  const auto line = std::count(preceding_text.begin(), preceding_text.end(), '\n') + 1;
+  const std::size_t column = byte_index - (preceding_text.rfind('\n') + 1) + 1;  // npos + 1 is 0
   throw StudyError(one_line(source + ": line " + std::to_string(line) + ", column " +
-                            std::to_string(column) + ": " + what));
+                            std::to_string(column) + ": " + fault));
 }
 
 [[noreturn]] void refuse_grammar(std::string_view text, const std::string& source,
                                  const json::parse_error& error) {
-  const std::size_t at = std::min(error.byte > 0 ? error.byte - 1 : 0, text.size());
+  const std::size_t byte_index = std::min(error.byte > 0 ? error.byte - 1 : 0, text.size());
   // The library's message without its prefix and without the bytes that it last read.
-  std::string what = error.what();
-  what.erase(0, std::min(what.find("syntax error"), what.size()));
-  what = what.substr(0, what.find("; last read"));
-  refuse_byte(text, at, source,
-              (what.empty() ? "is not JSON" : what) +
+  std::string fault = error.what();
+  fault.erase(0, std::min(fault.find("syntax error"), fault.size()));
+  fault = fault.substr(0, fault.find("; last read"));
+  refuse_byte(text, byte_index, source,
+              (fault.empty() ? "is not JSON" : fault) +
                   "; give JSON without trailing commas; // begins a comment");
 }
 
-/// The parser takes a zero byte for the end of the text, and ignores what follows.
+/// Refuses zero bytes: the parser would stop at the first and ignore everything after it.
 void refuse_zero_bytes(std::string_view text, const std::string& source) {
-  const std::size_t at = text.find('\0');
-  if (at == std::string_view::npos) return;
-  refuse_byte(text, at, source,
-              "is a zero byte, which no JSON text has; remove it and everything after it, or write "
-              "the file again");
+  const std::size_t byte_index = text.find('\0');
+  if (byte_index == std::string_view::npos) return;
+  refuse_byte(
+      text, byte_index, source,
+      "is a zero byte, which JSON does not allow; remove it and everything after it, or write "
+      "the file again");
 }
 
 /// The value as a whole number, limited to 64 bits; nothing if it is not a whole number.
@@ -161,7 +161,7 @@ std::string list_of(std::span<const std::string_view> names, std::string_view qu
   });
 }
 
-std::string words_for(const NumberRange& range) {
+std::string range_phrase(const NumberRange& range) {
   if (!range.open_low && !range.open_high) {
     return "from " + number_text(range.low) + " to " + number_text(range.high);
   }
@@ -211,16 +211,16 @@ std::string without_comments(std::string_view text) {
          "\n";
 }
 
-void JsonValue::refuse(const std::string& what) const {
-  refuse_at(node_->source, node_->pointer, what);
+void JsonValue::refuse(const std::string& fault) const {
+  refuse_at(node_->source, node_->pointer, fault);
 }
 
-void JsonValue::refuse_below(std::string_view pointer, const std::string& what) const {
-  refuse_at(node_->source, node_->pointer + std::string(pointer), what);
+void JsonValue::refuse_below(std::string_view pointer, const std::string& fault) const {
+  refuse_at(node_->source, node_->pointer + std::string(pointer), fault);
 }
 
-void JsonValue::refuse_type(const std::string& wanted) const {
-  refuse("must be " + wanted + ", not " + kind_of(*node_->value));
+void JsonValue::refuse_type(const std::string& expected) const {
+  refuse("must be " + expected + ", not " + kind_of(*node_->value));
 }
 
 bool JsonValue::is_text() const {
@@ -249,22 +249,22 @@ double JsonValue::number(const NumberRange& range) const {
   if (!node_->value->is_number()) refuse_type("a number");
   const double number = node_->value->get<double>();
   if (!range.contains(number)) {
-    refuse("is " + number_text(number) + ", must be " + words_for(range));
+    refuse("is " + number_text(number) + ", must be " + range_phrase(range));
   }
   return number;
 }
 
 std::int64_t JsonValue::integer(std::int64_t low, std::int64_t high) const {
-  const auto whole = whole_number(*node_->value);
-  if (!whole) refuse_type("a whole number");
-  if (*whole < low || *whole > high) {
+  const auto number = whole_number(*node_->value);
+  if (!number) refuse_type("a whole number");
+  if (*number < low || *number > high) {
     refuse("is " + node_->value->dump() + ", must be from " + std::to_string(low) + " to " +
            std::to_string(high));
   }
-  return *whole;
+  return *number;
 }
 
-std::string JsonValue::any_object() const {
+std::string JsonValue::object_text() const {
   if (!node_->value->is_object()) refuse_type("an object");
   return node_->value->dump();
 }
@@ -282,26 +282,26 @@ std::vector<JsonValue> JsonValue::items(std::size_t min_count, std::size_t max_c
   return items;
 }
 
-JsonObject JsonValue::object(std::span<const std::string_view> known) const {
+JsonObject JsonValue::object(std::span<const std::string_view> known_keys) const {
   if (!node_->value->is_object()) refuse_type("an object");
   for (const auto& [key, value] : node_->value->items()) {
-    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    const auto nearest = nearest_name(key, known);
-    const std::string advice =
-        nearest ? "did you mean " + in_quotes(*nearest) + "?" : "known here: " + list_of(known, "");
+    if (std::find(known_keys.begin(), known_keys.end(), key) != known_keys.end()) continue;
+    const auto nearest = nearest_name(key, known_keys);
+    const std::string advice = nearest ? "did you mean " + in_quotes(*nearest) + "?"
+                                       : "known here: " + list_of(known_keys, "");
     node_->child(value, key).refuse("is not a known key; " + advice);
   }
   return JsonObject(*this);
 }
 
-JsonObject JsonValue::object(std::initializer_list<std::string_view> known) const {
-  return object(std::span<const std::string_view>(known.begin(), known.size()));
+JsonObject JsonValue::object(std::initializer_list<std::string_view> known_keys) const {
+  return object(std::span<const std::string_view>(known_keys.begin(), known_keys.size()));
 }
 
 std::size_t JsonValue::choice(std::span<const std::string_view> names) const {
   const std::string& name = text();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  const auto match = std::find(names.begin(), names.end(), name);
+  if (match != names.end()) return static_cast<std::size_t>(match - names.begin());
   const auto nearest = nearest_name(name, names);
   refuse(in_quotes(name) + " is not known to this version; " +
          (nearest ? "did you mean " + in_quotes(*nearest) + "? " : "") +
@@ -320,8 +320,8 @@ JsonValue JsonObject::at(std::string_view key) const {
 }
 
 std::string number_text(double number) {
-  const bool whole = number == std::floor(number) && std::abs(number) < 0x1.0p53;
-  return whole ? std::to_string(static_cast<std::int64_t>(number)) : json(number).dump();
+  const bool is_whole = number == std::floor(number) && std::abs(number) < 0x1.0p53;
+  return is_whole ? std::to_string(static_cast<std::int64_t>(number)) : json(number).dump();
 }
 
 std::string in_quotes(std::string_view text) {

@@ -1,5 +1,5 @@
-/// \file A strict reader for JSON files that people write: it refuses everything that it does not
-/// understand, and names the place.
+/// \file A strict reader for hand-written JSON files. It refuses unknown keys and values, and
+/// its errors name the position in the file.
 #pragma once
 
 #include "core/named.hpp"
@@ -37,16 +37,16 @@ struct NumberRange {
 class JsonObject;
 
 /// A value and its place in the document. Every read throws StudyError
-/// "SOURCE: POINTER: what; remedy" if the value is not what the caller asks for. All values of a
-/// document share it.
+/// "SOURCE: POINTER: fault; remedy" if the value is not as requested. All values of a document
+/// share its memory.
 class JsonValue {
  public:
-  /// \param what  what is wrong, and the remedy
+  /// \param fault  what is wrong, and the remedy
   /// \throws StudyError always
-  [[noreturn]] void refuse(const std::string& what) const;
+  [[noreturn]] void refuse(const std::string& fault) const;
   /// The same for a place below this one, which may be missing.
   /// \param pointer  from here, for instance "/trials/repeats"
-  [[noreturn]] void refuse_below(std::string_view pointer, const std::string& what) const;
+  [[noreturn]] void refuse_below(std::string_view pointer, const std::string& fault) const;
 
   [[nodiscard]] bool is_text() const;
   [[nodiscard]] bool is_list() const;
@@ -55,14 +55,14 @@ class JsonValue {
   /// true or false.
   [[nodiscard]] bool boolean() const;
   [[nodiscard]] double number(const NumberRange& range) const;
-  /// A whole number; 5.0 counts as one.
+  /// A whole number; 5.0 is accepted as 5.
   [[nodiscard]] std::int64_t integer(std::int64_t low, std::int64_t high) const;
   [[nodiscard]] std::vector<JsonValue> items(std::size_t min_count, std::size_t max_count) const;
-  /// An object; a key that is not among these is refused.
-  [[nodiscard]] JsonObject object(std::span<const std::string_view> known) const;
-  [[nodiscard]] JsonObject object(std::initializer_list<std::string_view> known) const;
+  /// An object; refuses keys that are not in `known_keys`.
+  [[nodiscard]] JsonObject object(std::span<const std::string_view> known_keys) const;
+  [[nodiscard]] JsonObject object(std::initializer_list<std::string_view> known_keys) const;
   /// An object with keys unknown to this reader, as JSON on one line, without comments.
-  [[nodiscard]] std::string any_object() const;
+  [[nodiscard]] std::string object_text() const;
   /// The index of a text in `names`; any other text is refused.
   [[nodiscard]] std::size_t choice(std::span<const std::string_view> names) const;
 
@@ -77,12 +77,12 @@ class JsonValue {
   struct Node;
 
   explicit JsonValue(std::shared_ptr<const Node> node) : node_(std::move(node)) {}
-  [[noreturn]] void refuse_type(const std::string& wanted) const;
+  [[noreturn]] void refuse_type(const std::string& expected) const;
 
   std::shared_ptr<const Node> node_;
 };
 
-/// An object that has only known keys.
+/// An object whose keys have been checked.
 class JsonObject {
  public:
   explicit JsonObject(JsonValue place) : place_(std::move(place)) {}
@@ -112,8 +112,8 @@ class JsonObject {
 /// A number as JSON writes it: the shortest form, with a decimal point in every locale.
 [[nodiscard]] std::string number_text(double number);
 
-/// A document as files and commands have it: indented, ending with a line feed. Bytes that are not
-/// UTF-8 become replacement characters.
+/// The text of a document for files and commands: indented, ending with a line feed. Bytes that are
+/// not UTF-8 become replacement characters.
 template <typename Json>
 [[nodiscard]] std::string json_text(const Json& document) {
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

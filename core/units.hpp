@@ -1,4 +1,4 @@
-/// \file Conversion of units.
+/// \file Conversion factors between units.
 #pragma once
 
 namespace touchtrial {

@@ -17,8 +17,8 @@ fs::path absolute_path_in(const char* variable) {
 }  // namespace
 
 fs::path user_config_folder() {
-  if (const fs::path named = absolute_path_in("XDG_CONFIG_HOME"); !named.empty()) {
-    return named / "touchtrial";
+  if (const fs::path config_home = absolute_path_in("XDG_CONFIG_HOME"); !config_home.empty()) {
+    return config_home / "touchtrial";
   }
   const fs::path home = absolute_path_in("HOME");
   return home.empty() ? home : home / ".config" / "touchtrial";

@@ -4,8 +4,8 @@
 
 namespace touchtrial {
 
-std::string utc_text(std::chrono::seconds at) {
-  const std::chrono::sys_seconds time{at};
+std::string utc_text(std::chrono::seconds since_1970) {
+  const std::chrono::sys_seconds time{since_1970};
   const auto day = std::chrono::floor<std::chrono::days>(time);
   const std::chrono::year_month_day date(day);
   const std::chrono::hh_mm_ss clock(time - day);
@@ -17,13 +17,13 @@ std::string utc_text(std::chrono::seconds at) {
   return text;
 }
 
-std::string utc_words(std::chrono::nanoseconds at) {
-  const std::string text = utc_text(at);
+std::string utc_words(std::chrono::nanoseconds since_1970) {
+  const std::string text = utc_text(since_1970);
   return text.substr(0, 10) + " " + text.substr(11, 5) + " UTC";
 }
 
-std::string utc_day(std::chrono::nanoseconds at) {
-  return utc_text(at).substr(0, 10);
+std::string utc_day(std::chrono::nanoseconds since_1970) {
+  return utc_text(since_1970).substr(0, 10);
 }
 
 }  // namespace touchtrial

@@ -7,15 +7,15 @@
 namespace touchtrial {
 
 /// A time since 1970 as ISO 8601, "2026-01-31T14:05:09Z".
-/// \param at  in the years 0 to 9999; nanoseconds always are
-[[nodiscard]] std::string utc_text(std::chrono::seconds at);
-[[nodiscard]] inline std::string utc_text(std::chrono::nanoseconds at) {
-  return utc_text(std::chrono::floor<std::chrono::seconds>(at));
+/// \param since_1970  in the years 0 to 9999; nanoseconds cannot leave this range
+[[nodiscard]] std::string utc_text(std::chrono::seconds since_1970);
+[[nodiscard]] inline std::string utc_text(std::chrono::nanoseconds since_1970) {
+  return utc_text(std::chrono::floor<std::chrono::seconds>(since_1970));
 }
 
 /// "2026-01-31 14:05 UTC", for people.
-[[nodiscard]] std::string utc_words(std::chrono::nanoseconds at);
+[[nodiscard]] std::string utc_words(std::chrono::nanoseconds since_1970);
 /// "2026-01-31"
-[[nodiscard]] std::string utc_day(std::chrono::nanoseconds at);
+[[nodiscard]] std::string utc_day(std::chrono::nanoseconds since_1970);
 
 }  // namespace touchtrial

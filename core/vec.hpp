@@ -30,11 +30,11 @@ struct Vec3 {
   friend constexpr bool operator==(Vec3, Vec3) noexcept = default;
 };
 
-/// A copy that is loaded number by number. Compilers like to load two numbers at once, and such a
-/// load stalls if the numbers were just stored separately (store forwarding).
-[[nodiscard]] inline Vec3 by_number(const Vec3& a) noexcept {
-  const volatile Vec3& each = a;
-  return {each.x, each.y, each.z};
+/// Copies a vector component by component. Compilers tend to load two components at once, and such
+/// a load stalls if the components were just stored separately (store forwarding).
+[[nodiscard]] inline Vec3 copy_by_component(const Vec3& a) noexcept {
+  const volatile Vec3& source = a;
+  return {source.x, source.y, source.z};
 }
 
 [[nodiscard]] constexpr double dot(Vec3 a, Vec3 b) noexcept {

@@ -1,4 +1,4 @@
-/// \file The program's version, which every study records. CMakeLists.txt defines it.
+/// \file The program's version, defined in CMakeLists.txt and recorded in every study.
 #pragma once
 
 #include <string_view>

@@ -8,8 +8,8 @@
 namespace touchtrial::device {
 namespace {
 
-void tighten(double& limit, const std::optional<double>& lab) {
-  if (lab) limit = std::min(limit, *lab);
+void tighten(double& limit, const std::optional<double>& lab_limit) {
+  if (lab_limit) limit = std::min(limit, *lab_limit);
 }
 
 }  // namespace
@@ -19,15 +19,15 @@ DeviceUse DeviceSettings::use_of(const std::string& driver) const {
   return found == uses.end() ? DeviceUse{} : found->second;
 }
 
-SafetyLimits stricter_of(SafetyLimits limits, const LabLimits& lab) noexcept {
-  tighten(limits.max_force_n, lab.max_force_n);
-  tighten(limits.max_slew_n_per_s, lab.max_slew_n_per_s);
+SafetyLimits stricter_of(SafetyLimits limits, const LabLimits& lab_limits) noexcept {
+  tighten(limits.max_force_n, lab_limits.max_force_n);
+  tighten(limits.max_slew_n_per_s, lab_limits.max_slew_n_per_s);
   limits.max_slew_n_per_s = std::max(limits.max_slew_n_per_s, limits.max_force_n / kMaxReleaseS);
-  tighten(limits.max_speed_mm_s, lab.max_speed_mm_s);
+  tighten(limits.max_speed_mm_s, lab_limits.max_speed_mm_s);
   if (limits.continuous_force_n > 0.0) {
-    tighten(limits.continuous_force_n, lab.continuous_force_n);
+    tighten(limits.continuous_force_n, lab_limits.continuous_force_n);
   } else {
-    limits.continuous_force_n = lab.continuous_force_n.value_or(0.0);
+    limits.continuous_force_n = lab_limits.continuous_force_n.value_or(0.0);
   }
   return limits;
 }
@@ -37,11 +37,11 @@ std::filesystem::path default_device_settings_path() {
   return folder.empty() ? folder : folder / "devices.json";
 }
 
-DeviceSettings device_settings_for(const std::filesystem::path& named) {
-  if (!named.empty()) return read_device_settings(named);
+DeviceSettings load_device_settings(const std::filesystem::path& path) {
+  if (!path.empty()) return read_device_settings(path);
   const std::filesystem::path default_path = default_device_settings_path();
-  return !default_path.empty() && is_there(default_path) ? read_device_settings(default_path)
-                                                         : DeviceSettings{};
+  return !default_path.empty() && path_exists(default_path) ? read_device_settings(default_path)
+                                                            : DeviceSettings{};
 }
 
 }  // namespace touchtrial::device

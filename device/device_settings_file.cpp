@@ -1,4 +1,4 @@
-/// \file The settings file of a lab's devices: every key, as it is read.
+/// \file Reads the device settings file.
 #include "core/describe.hpp"
 #include "core/files.hpp"
 #include "device/device_settings.hpp"
@@ -15,15 +15,15 @@ namespace fs = std::filesystem;
 
 constexpr NumberRange kForceN{.low = 0.0, .high = 100.0, .open_low = true};
 constexpr std::int64_t kMaxMotorValue = 10'000;
-constexpr std::int64_t kLastPort = 65535;
+constexpr std::int64_t kMaxPort = 65535;
 constexpr auto kMarkerFormats = std::to_array<Named<MarkerFormat>>(
     {{"byte", MarkerFormat::byte}, {"text", MarkerFormat::text}});
 constexpr auto kOrientations = std::to_array<Named<PlaneOrientation>>(
     {{"horizontal", PlaneOrientation::horizontal}, {"vertical", PlaneOrientation::vertical}});
 
-/// Refuses zero bytes, which would end a text early for the system and for vendors' libraries, and
+/// Refuses zero bytes, at which the system and vendors' libraries would truncate the text, and
 /// other control characters.
-void check_plain(const JsonValue& place) {
+void refuse_control_characters(const JsonValue& place) {
   const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
   if (std::ranges::any_of(place.text(), is_control)) {
     place.refuse("has a control character: " + in_quotes(place.text()) + "; leave it out");
@@ -31,11 +31,11 @@ void check_plain(const JsonValue& place) {
 }
 
 constexpr std::string_view kPattern = R"(^[^\u0000-\u001f\u007f]*$)";
-constexpr TextRule kPlain{.check = check_plain, .pattern = kPattern};
+constexpr TextRule kPrintable{.check = refuse_control_characters, .pattern = kPattern};
 constexpr TextRule kLibrary{
     .check =
         [](const JsonValue& place) {
-          check_plain(place);
+          refuse_control_characters(place);
           if (!place.text().empty()) return;
           place.refuse("is empty; give the library's path, or leave the key out");
         },
@@ -44,7 +44,7 @@ constexpr TextRule kLibrary{
     .description = "a name, or a path with a slash"};
 constexpr TextRule kHost{.check =
                              [](const JsonValue& place) {
-                               check_plain(place);
+                               refuse_control_characters(place);
                                if (!place.text().empty()) return;
                                place.refuse("is empty; give the host's name, or leave the key out");
                              },
@@ -53,7 +53,7 @@ constexpr TextRule kHost{.check =
                          .description = "not empty"};
 constexpr TextRule kLine{.check =
                              [](const JsonValue& place) {
-                               check_plain(place);
+                               refuse_control_characters(place);
                                if (!place.text().empty()) return;
                                place.refuse(
                                    "is empty; name the line, for instance /dev/ttyUSB0, or leave "
@@ -63,37 +63,38 @@ constexpr TextRule kLine{.check =
                          .pattern = kPattern,
                          .description = "a path"};
 
-/// The settings that are read, and where relative paths start.
-struct File {
+/// The settings to fill, and the folder of relative paths.
+struct ParsedFile {
   DeviceSettings& settings;
   const fs::path& folder;
 };
 
-/// The path of a file; an empty text names no file.
+/// Describes a file's path; an empty text names no file.
 void describe_path(ObjectIo& io, std::string_view key, const fs::path& folder, fs::path& path,
-                   const KeyInfo& about) {
-  io.member(key, about, !path.empty(), [&](ValueIo& value) {
+                   const KeyInfo& key_info) {
+  io.member(key, key_info, !path.empty(), [&](ValueIo& value) {
     std::string text;
-    value.text(text, kPlain);
+    value.text(text, kPrintable);
     if (!text.empty()) path = folder / text;
   });
 }
 
-/// The name of a library: a path if it has a slash, else a name that the system looks up.
-void describe_library(ObjectIo& io, const fs::path& folder, fs::path& path, const KeyInfo& about) {
-  io.member("library", about, !path.empty(), [&](ValueIo& value) {
+/// Describes a library: a path if it has a slash, else a name that the system looks up.
+void describe_library(ObjectIo& io, const fs::path& folder, fs::path& path,
+                      const KeyInfo& key_info) {
+  io.member("library", key_info, !path.empty(), [&](ValueIo& value) {
     std::string name = path.string();
     value.text(name, kLibrary);
     path = name.find('/') == std::string::npos ? fs::path(name) : folder / name;
   });
 }
 
-void describe_falcon(ObjectIo& io, const File& file) {
+void describe_falcon(ObjectIo& io, const ParsedFile& file) {
   FalconSettings& falcon = file.settings.falcon;
   constexpr double kMaxBiasN = FalconSettings::kMaxGravityBiasN;
   describe_path(io, "firmware", file.folder, falcon.firmware,
                 {"the vendor's firmware image, needed unless the device already runs it"});
-  io.text("serial", falcon.serial, kPlain,
+  io.text("serial", falcon.serial, kPrintable,
           {.meaning = "serial number of the Falcon to use", .default_text = "the only one"});
   io.member("gravity_bias_n",
             {.meaning = "force that supports the weight of the grip, in the device frame; not "
@@ -120,23 +121,23 @@ void describe_falcon(ObjectIo& io, const File& file) {
   io.integer("motor_peak", falcon.motor_peak, 1, kMaxMotorValue,
              {"maximum motor value; 6,616 is 1 N m"});
   io.integer("motor_continuous", falcon.motor_continuous, 1, kMaxMotorValue,
-             {"motor value that can be held for any time, a guess until measured; no limit if not "
+             {"motor value that can be held indefinitely, a guess until measured; no limit if not "
               "below the maximum"});
   io.number("motor_peak_s", falcon.motor_peak_s, {.low = 0.0, .high = 600.0, .open_low = true},
             {"time for which a cold motor may have the maximum value"});
 }
 
-void describe_openhaptics(ObjectIo& io, const File& file) {
-  OpenHapticsSettings& touch = file.settings.openhaptics;
-  describe_library(io, file.folder, touch.library,
+void describe_openhaptics(ObjectIo& io, const ParsedFile& file) {
+  OpenHapticsSettings& openhaptics = file.settings.openhaptics;
+  describe_library(io, file.folder, openhaptics.library,
                    {"the vendor's library; the system searches for a name without a slash"});
-  io.text("device", touch.device, kPlain,
+  io.text("device", openhaptics.device, kPrintable,
           {.meaning = "the device's name in the vendor's configuration",
            .default_text = "the vendor's default"});
-  io.integer("rate_hz", touch.rate_hz, 500, 10'000, {"rate of the vendor's scheduler"});
+  io.integer("rate_hz", openhaptics.rate_hz, 500, 10'000, {"rate of the vendor's scheduler"});
 }
 
-void describe_dhd(ObjectIo& io, const File& file) {
+void describe_dhd(ObjectIo& io, const ParsedFile& file) {
   DhdSettings& dhd = file.settings.dhd;
   describe_library(io, file.folder, dhd.library,
                    {"the vendor's library, its folder or that of the kit; the default finds every "
@@ -146,12 +147,12 @@ void describe_dhd(ObjectIo& io, const File& file) {
              {"whether the maker's library compensates the weight of arms and effector while force "
               "is on"});
   io.number("effector_mass_kg", dhd.effector_mass_kg, {0.0, 10.0},
-            {"mass of the effector; 0: the device's own value. May differ from that by 0.2, and is "
+            {"mass of the effector; 0: the device's own value. At most 0.2 from that value, and "
              "limited by the model"});
   io.number("max_force_n", dhd.max_force_n, kForceN,
             {.meaning = "peak force, at most the model's", .default_text = "by model"});
   io.number("continuous_force_n", dhd.continuous_force_n, {0.0, 100.0},
-            {.meaning = "force that the device can hold for any time; 0: unknown",
+            {.meaning = "force that the device can hold indefinitely; 0: unknown",
              .default_text = "by model"});
   io.optional("workspace_mm", dhd.workspace_mm,
               {.meaning = "width, height and depth of the ellipsoidal workspace",
@@ -161,33 +162,33 @@ void describe_dhd(ObjectIo& io, const File& file) {
               });
 }
 
-void describe_plugin(ObjectIo& io, const File& file) {
+void describe_plugin(ObjectIo& io, const ParsedFile& file) {
   PluginSettings& plugin = file.settings.plugin;
   describe_library(
       io, file.folder, plugin.library,
       {"the library of the plug-in, required; the system searches for a name without a slash"});
   io.member("settings", {"passed to the plug-in unchanged"}, true, [&plugin](ValueIo& value) {
     value.custom(R"({"type": "object"})",
-                 [&plugin](const JsonValue& place) { plugin.settings = place.any_object(); },
+                 [&plugin](const JsonValue& place) { plugin.settings = place.object_text(); },
                  [&plugin] { return plugin.settings; });
   });
 }
 
-void describe_inverse3(ObjectIo& io, const File& file) {
+void describe_inverse3(ObjectIo& io, const ParsedFile& file) {
   Inverse3Settings& inverse3 = file.settings.inverse3;
   io.text("host", inverse3.host, kHost, {"the machine that runs Haply's Inverse service"});
-  io.integer("port", inverse3.port, 1, kLastPort, {"port of its simulation channel"});
-  io.integer("events_port", inverse3.events_port, 1, kLastPort, {"port of its events channel"});
-  io.integer("http_port", inverse3.http_port, 1, kLastPort,
-             {"HTTP port, if the simulation channel has no HTTP (before the later 3.5 versions)"});
+  io.integer("port", inverse3.port, 1, kMaxPort, {"port of its simulation channel"});
+  io.integer("events_port", inverse3.events_port, 1, kMaxPort, {"port of its events channel"});
+  io.integer("http_port", inverse3.http_port, 1, kMaxPort,
+             {"HTTP port, if the simulation channel has no HTTP (up to early 3.5 versions)"});
   io.text(
-      "device_id", inverse3.device_id, kPlain,
+      "device_id", inverse3.device_id, kPrintable,
       {.meaning = "the device to use, as the service names it", .default_text = "the only one"});
   io.number("max_force_n", inverse3.max_force_n, kForceN,
             {"maximum force along each axis, not published by the maker"});
 }
 
-void describe_replay(ObjectIo& io, const File& file) {
+void describe_replay(ObjectIo& io, const ParsedFile& file) {
   describe_path(io, "trace", file.folder, file.settings.replay.trace,
                 {"the recording: CSV with the columns time_s, x_mm, y_mm, z_mm"});
 }
@@ -197,7 +198,7 @@ void describe_limits(ObjectIo& io, LabLimits& limits) {
   const auto up_to = [](double high) { return NumberRange{0.0, high, true}; };
   io.number("max_force_n", limits.max_force_n, kForceN, {"largest norm of a force"});
   io.number("continuous_force_n", limits.continuous_force_n, kForceN,
-            {"force that can last for any time; larger forces are reduced after some time"});
+            {"force that can be held indefinitely; larger forces are reduced after some time"});
   io.number("max_slew_n_per_s", limits.max_slew_n_per_s, up_to(defaults.max_slew_n_per_s),
             {"maximum rate of change of the force"});
   io.number("max_speed_mm_s", limits.max_speed_mm_s, up_to(defaults.max_speed_mm_s),
@@ -208,7 +209,9 @@ void describe_placement(ObjectIo& io, DeviceUse& use) {
   io.optional("orientation", use.orientation,
               {.meaning = "horizontal, like a table, or vertical, like a wall",
                .default_text = "`horizontal`"},
-              [](ValueIo& value, PlaneOrientation& one) { value.choice(one, kOrientations); });
+              [](ValueIo& value, PlaneOrientation& orientation) {
+                value.choice(orientation, kOrientations);
+              });
   io.optional("centre_mm", use.centre_mm,
               {.meaning = "position of a plane's centre relative to the centre of the workspace, "
                           "in the device frame: right, up, towards the person",
@@ -218,15 +221,15 @@ void describe_placement(ObjectIo& io, DeviceUse& use) {
               });
 }
 
-/// A number for all axes, or one for each.
+/// Describes one number for all axes, or one for each.
 void describe_scale(ValueIo& io, Vec3& scale) {
   constexpr NumberRange kRange{.low = kMinScale, .high = kMaxScale};
   const ValueIo::Form forms[] = {{[](const JsonValue& place) { return place.is_list(); },
                                   [&](ValueIo& value) { value.axes(scale, kRange); }},
                                  {{}, [&](ValueIo& value) {
-                                    double all = scale.x;
-                                    value.number(all, kRange);
-                                    scale = {all, all, all};
+                                    double factor = scale.x;
+                                    value.number(factor, kRange);
+                                    scale = {factor, factor, factor};
                                   }}};
   io.one_of(scale.x == scale.y && scale.y == scale.z ? 1 : 0, forms);
 }
@@ -268,7 +271,7 @@ void describe_serial(ObjectIo& io, MarkerLineSettings& serial) {
   });
 }
 
-void describe_instruments(ObjectIo& io, const File& file) {
+void describe_instruments(ObjectIo& io, const ParsedFile& file) {
   InstrumentSettings& instruments = file.settings.instruments;
   io.part("serial", instruments.serial, {"a serial line that receives a code for every event"},
           describe_serial);
@@ -280,58 +283,60 @@ void describe_instruments(ObjectIo& io, const File& file) {
               lsl.library = "liblsl.so";
               value.object([&](ObjectIo& keys) {
                 describe_library(keys, file.folder, lsl.library, {"the user's library"});
-                keys.text("name", lsl.name, kPlain,
+                keys.text("name", lsl.name, kPrintable,
                           {"name of the streams: `NAME markers` and `NAME hand`"});
               });
             });
 }
 
-/// Drivers with settings of their own; the others have only limits.
-struct OwnSettings {
-  void (*describe)(ObjectIo& io, const File& file);
+/// The section of a driver with specific settings; other drivers have only limits.
+struct DriverSection {
+  void (*describe)(ObjectIo& io, const ParsedFile& file);
   bool has_scales;
 };
-constexpr auto kOwnSettings =
-    std::to_array<Named<OwnSettings>>({{"falcon", {describe_falcon, true}},
-                                       {"openhaptics", {describe_openhaptics, true}},
-                                       {"dhd", {describe_dhd, true}},
-                                       {"plugin", {describe_plugin, true}},
-                                       {"inverse3", {describe_inverse3, true}},
-                                       {"replay", {describe_replay, false}}});
+constexpr auto kDriverSections =
+    std::to_array<Named<DriverSection>>({{"falcon", {describe_falcon, true}},
+                                         {"openhaptics", {describe_openhaptics, true}},
+                                         {"dhd", {describe_dhd, true}},
+                                         {"plugin", {describe_plugin, true}},
+                                         {"inverse3", {describe_inverse3, true}},
+                                         {"replay", {describe_replay, false}}});
 
-/// The driver's section, which may have the name of one of its products.
-void describe_driver(ObjectIo& io, const DeviceDriver& driver, const File& file) {
+/// Describes a driver's section, whose key is the name of the driver or of one of its products.
+void describe_driver(ObjectIo& io, const DeviceDriver& driver, const ParsedFile& file) {
   std::vector<std::string_view> names = driver.names();
   io.rule([&names](const JsonValue& /*place*/, const JsonObject& file_object) {
-    std::string_view taken;
+    std::string_view first_name;
     for (const std::string_view name : names) {
       const auto section = file_object.find(name);
-      if (section && !taken.empty()) {
-        section->refuse("is the driver of /" + std::string(taken) + " too; put its settings there");
+      if (section && !first_name.empty()) {
+        section->refuse("names the same driver as /" + std::string(first_name) +
+                        "; put its settings there");
       }
-      if (section) taken = name;
+      if (section) first_name = name;
     }
   });
   std::erase(names, std::string_view(driver.name));
-  std::optional<DeviceUse> read;
-  io.optional(driver.name, read, {.meaning = driver.what, .aliases = names},
+  std::optional<DeviceUse> section_use;
+  io.optional(driver.name, section_use, {.meaning = driver.what, .aliases = names},
               [&](ValueIo& value, DeviceUse& use) {
                 value.object([&](ObjectIo& keys) {
-                  const auto* const own =
-                      std::ranges::find(kOwnSettings, driver.name, &Named<OwnSettings>::name);
-                  const bool has_own = own != kOwnSettings.end();
-                  if (has_own) own->value.describe(keys, file);
-                  if (has_own && own->value.has_scales) describe_scales_and_placement(keys, use);
+                  const auto* const section =
+                      std::ranges::find(kDriverSections, driver.name, &Named<DriverSection>::name);
+                  const bool has_section = section != kDriverSections.end();
+                  if (has_section) section->value.describe(keys, file);
+                  if (has_section && section->value.has_scales)
+                    describe_scales_and_placement(keys, use);
                   keys.part(
                       "limits", use.limits,
                       {"limits that apply in addition to those of the study and of the device"},
                       describe_limits);
                 });
               });
-  if (read) file.settings.uses[driver.name] = *read;
+  if (section_use) file.settings.uses[driver.name] = *section_use;
 }
 
-void describe(ObjectIo& io, const File& file) {
+void describe(ObjectIo& io, const ParsedFile& file) {
   io.member("instruments", {"instruments that record during a session and receive its events"},
             true, [&](ValueIo& value) {
               value.object([&](ObjectIo& keys) { describe_instruments(keys, file); });
@@ -344,7 +349,7 @@ void describe(ObjectIo& io, const File& file) {
 DeviceSettings parse_device_settings(std::string_view text, const fs::path& folder,
                                      const std::string& source) {
   DeviceSettings settings;
-  read_described(parse_strict_json(text, source), [&](ObjectIo& io) {
+  read_settings(parse_strict_json(text, source), [&](ObjectIo& io) {
     describe(io, {settings, folder});
   });
   return settings;

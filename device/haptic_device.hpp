@@ -9,21 +9,20 @@
 
 namespace touchtrial::device {
 
-/// One reading. A driver gives it in the device frame: right-handed, x to the right, y up, z
-/// towards the person, origin in the middle of the workspace. A PlacedDevice turns it into the
+/// One reading. A driver reports it in the device frame: right-handed, x to the right, y up, z
+/// towards the person, origin in the middle of the workspace. A PlacedDevice converts it to the
 /// plane frame: x and y along the texture from its top-left corner, z out of the plane towards the
-/// hand. Devices without a frame of their own (simulated, mouse, replay) use the plane frame
-/// themselves.
+/// hand. Drivers without a device frame (simulated, mouse, replay) report in the plane frame.
 struct DeviceSample {
   Vec3 position_mm;
   Vec3 velocity_mm_s;
-  /// Counts the device's own readings; a repeated number means no newer reading.
+  /// Counts the device's readings; a repeated number means no newer reading.
   std::uint64_t sequence = 0;
   std::uint32_t buttons = 0;  ///< bit i is button i, set while it is down
   bool ready = true;          ///< homed and calibrated: the position is valid and force may be sent
-  /// The motors could not exert the whole newest force because of their own limit.
+  /// The motors' own limit reduced the newest force.
   bool limited = false;
-  /// The exerted force that the device reports with this reading, N; nothing: not reported.
+  /// The exerted force as reported with this reading, N; nothing: not reported.
   std::optional<Vec3> delivered_n = std::nullopt;
 };
 
@@ -40,7 +39,7 @@ enum class DeviceFault {
   driver,        ///< any other failure of the vendor's library or the operating system
 };
 
-/// What a person must still do before force may be sent.
+/// What a person must do before force may be sent.
 enum class DeviceReadiness {
   ready,
   needs_homing,       ///< move the handle through its whole range until every axis is homed
@@ -62,8 +61,8 @@ struct Workspace {
   WorkspaceShape shape = WorkspaceShape::box;
 };
 
-/// True newtons per driver's newton, and true millimetres per driver's millimetre, on each axis of
-/// the device frame; a lab's settings. The felt force is `force` times the commanded one.
+/// A lab's calibration on each axis of the device frame: true newtons per driver's newton, and true
+/// millimetres per driver's millimetre. The felt force is `force` times the commanded force.
 struct DeviceScale {
   Vec3 force = {1.0, 1.0, 1.0};
   Vec3 length = {1.0, 1.0, 1.0};
@@ -80,21 +79,22 @@ struct DeviceInfo {
   double continuous_force_n = 0.0;  ///< sustainable without time limit; 0: unknown
   double max_rate_hz = 1000.0;      ///< of servo ticks; a higher rate has no benefit
   std::string model{};              ///< as reported by the device or its library; may be empty
-  std::string firmware{};           ///< version, likewise
-  /// Nothing: the device uses the plane frame and reaches any plane completely.
+  std::string firmware{};           ///< version, as reported; may be empty
+  /// Nothing: the device uses the plane frame and reaches every plane completely.
   std::optional<Workspace> workspace = std::nullopt;
   /// The texture is shown on a screen instead of felt: not blind, so only for pilot sessions and
   /// demonstrations.
   bool visual = false;
-  /// The largest wall stiffness that it renders stably, as stated by the maker; 0: unknown.
+  /// The largest wall stiffness that the device renders stably, as stated by the maker; 0: unknown.
   double max_stiffness_n_per_mm = 0.0;
-  /// The largest damping that it renders stably, N s/mm, likewise.
+  /// The largest damping that the device renders stably, N s/mm, as stated by the maker; 0:
+  /// unknown.
   double max_damping_n_s_per_mm = 0.0;
-  /// The largest HapticDevice::support_force_n; larger ones are shortened.
+  /// The maximum norm of HapticDevice::support_force_n; larger forces are reduced to it.
   double max_support_n = 0.0;
   /// Positions come from encoders on a hand-held arm, so they always change slightly while a person
-  /// presses (SafetyLimits::frozen_s). False for motion from a program or a recording, and for the
-  /// mouse, which a hand may hold still.
+  /// presses (SafetyLimits::frozen_s). False for computed or recorded motion, and for the mouse,
+  /// which a hand may hold still.
   bool has_encoders = false;
   DeviceScale scale{};    ///< applied by `open_device`; not set by drivers
   std::string library{};  ///< version of the maker's library, as reported; may be empty
@@ -123,12 +123,12 @@ class HapticDevice {
   /// The force that compensates the weight of handle and arm, N, in the frame of the samples. The
   /// servo calls it after `read`, on its thread; the safety chain limits it to
   /// DeviceInfo::max_support_n and adds it to the rendered force. A driver must not add force to
-  /// the argument of `write`. If a maker's library does so itself, the driver checks that weight
-  /// before force is switched on, and `halt` and `fault` switch the motors off.
+  /// the argument of `write`. If a maker's library adds it, the driver checks that weight before
+  /// force is switched on, and `halt` and `fault` switch the motors off.
   [[nodiscard]] virtual Vec3 support_force_n(const DeviceSample& /*sample*/) noexcept { return {}; }
 
-  /// Zero force at once and until `rearm`, regardless of `write`, and without the weight that a
-  /// maker's library adds. Safe in a signal handler.
+  /// Sets zero force at once and until `rearm`, regardless of `write`, and without the support that
+  /// a maker's library adds. Safe in a signal handler.
   virtual void halt() noexcept = 0;
   /// Enables forces again after `halt`; a person must decide this.
   virtual void rearm() noexcept = 0;

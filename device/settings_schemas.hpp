@@ -1,4 +1,4 @@
-/// \file The JSON Schemas of the files that this folder reads, as annotated_schema() makes them.
+/// \file The JSON Schemas of device settings, device models and certificates.
 #pragma once
 
 #include <string>

@@ -16,7 +16,7 @@ namespace touchtrial::engine {
 namespace {
 
 constexpr int kReferenceGrey = 128;
-constexpr double kStrongestEdge = 127.0;  // 255 in the picture
+constexpr double kStrongestEdge = 127.0;  // grey level 255 in the texture picture
 constexpr int kStripRows = 256;
 
 /// The medians of a strip of rows. OpenCV's filter is exact, but it extends an image by repeating
@@ -26,11 +26,11 @@ class MedianStrip {
   MedianStrip(const GreyImage& image, int radius) : image_(image), radius_(radius) {}
 
   void move_to(int first_row, int rows) {
-    framed_.create(rows + 2 * radius_, image_.width() + 2 * radius_, CV_8UC1);
-    for (int y = 0; y < framed_.rows; ++y) {
+    framed_strip_.create(rows + 2 * radius_, image_.width() + 2 * radius_, CV_8UC1);
+    for (int y = 0; y < framed_strip_.rows; ++y) {
       copy_with_frame(image_.row(symmetric_index(first_row + y - radius_, image_.height())), y);
     }
-    cv::medianBlur(framed_, medians_, 2 * radius_ + 1);
+    cv::medianBlur(framed_strip_, medians_, 2 * radius_ + 1);
   }
 
   /// \param y  0 is the strip's first row
@@ -39,15 +39,15 @@ class MedianStrip {
   }
 
  private:
-  void copy_with_frame(std::span<const std::uint8_t> from, int y) {
-    std::uint8_t* const to = framed_.ptr<std::uint8_t>(y) + radius_;
-    std::ranges::copy(from, to);
-    mirror_ends(to, image_.width(), radius_);
+  void copy_with_frame(std::span<const std::uint8_t> row, int y) {
+    std::uint8_t* const row_start = framed_strip_.ptr<std::uint8_t>(y) + radius_;
+    std::ranges::copy(row, row_start);
+    mirror_ends(row_start, image_.width(), radius_);
   }
 
   const GreyImage& image_;
   int radius_;
-  cv::Mat framed_;
+  cv::Mat framed_strip_;
   cv::Mat medians_;
 };
 

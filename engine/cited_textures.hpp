@@ -1,10 +1,10 @@
-/// \file The extractors that the paper cites, for comparison.
+/// \file Reference extractors cited by the paper, for comparison.
 /// Source: docs/method.md, "Other extractors".
 ///
-/// All use symmetric extension and return grey levels, exactly 0 on flat areas except for
+/// All functions use symmetric extension and return grey levels, exactly 0 on flat areas except for
 /// luminance_texture(). They compute in double and round to Real, which is float or double. Besides
-/// image and texture they need memory for a few rows, median_texture() for a strip of the image.
-/// All are thread-safe.
+/// image and texture they need memory for a few rows; median_texture() needs a strip of rows. All
+/// are thread-safe.
 #pragma once
 
 #include "core/plane.hpp"
@@ -18,7 +18,7 @@ template <typename Real>
 [[nodiscard]] Plane<Real> gaussian_texture(const GreyImage& image, double sigma_px);
 
 /// T = I - median of the surrounding (2 * radius + 1)^2 samples where that exceeds the threshold in
-/// magnitude, else 0. Exact. For large radii the cost of a pixel does not depend on the radius.
+/// magnitude, else 0. Exact. For large radii the cost per pixel does not depend on the radius.
 /// \param image  not empty
 /// \param radius  pixels, 1 .. 63
 /// \param threshold_grey  >= 0
@@ -31,7 +31,7 @@ template <typename Real>
 template <typename Real>
 [[nodiscard]] Plane<Real> edge_texture(const GreyImage& image, double divisor);
 
-/// T = I - 128: the picture itself is felt.
+/// T = I - 128: the picture itself as texture.
 /// \param image  not empty
 template <typename Real>
 [[nodiscard]] Plane<Real> luminance_texture(const GreyImage& image);

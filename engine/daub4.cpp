@@ -26,7 +26,7 @@ constexpr Filter kHigh = {kLow[3], -kLow[2], kLow[1], -kLow[0]};
 template <typename Sample>
 using ImageRows = std::array<std::span<const Sample>, kTaps>;
 
-/// Filters along y: makes one row of four, and mirrors it at its right end as far as `out` reaches.
+/// Filters four rows along y into one row, and mirrors its right end to fill `out`.
 template <typename Sample>
 void filter_columns(const ImageRows<Sample>& rows, const Filter& filter, std::vector<double>& out) {
   const std::size_t width = rows[0].size();
@@ -40,7 +40,7 @@ void filter_columns(const ImageRows<Sample>& rows, const Filter& filter, std::ve
   }
 }
 
-/// Filters along x, and keeps every second sample.
+/// Filters along x and downsamples by two.
 void filter_row(const std::vector<double>& row, const Filter& filter, std::span<double> out) {
   for (std::size_t i = 0; i < out.size(); ++i) {
     const double* x = row.data() + 2 * i;

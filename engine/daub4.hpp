@@ -1,4 +1,4 @@
-/// \file One level of the Daubechies wavelet transform with four taps.
+/// \file The four-tap Daubechies wavelet transform, level by level.
 /// Source: docs/method.md, "Sub-bands" (paper Eq. 1).
 #pragma once
 
@@ -15,11 +15,11 @@ struct SubBands {
   Plane<double> hh;
 };
 
-/// The first level, of an image. The kernels in single precision are tested against this.
+/// Computes the first level from an image. It is the reference for the single-precision kernels.
 /// \throws std::invalid_argument if the image is empty
 /// Thread-safe.
 [[nodiscard]] SubBands daub4_sub_bands(const GreyImage& image);
-/// The next level, of the ll of the level before.
+/// Computes the next level from the ll of the previous level.
 [[nodiscard]] SubBands daub4_sub_bands(const Plane<double>& ll);
 
 }  // namespace touchtrial::engine

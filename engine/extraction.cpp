@@ -24,8 +24,8 @@ constexpr int kForceNeighbourhood = 3;
 
 /// \param orders  one order, or a plane of orders at half resolution
 template <typename Orders>
-Plane<double> normed_texture(const GreyImage& image, const ExtractionOptions& options,
-                             const Orders& orders) {
+Plane<double> normalised_texture(const GreyImage& image, const ExtractionOptions& options,
+                                 const Orders& orders) {
   Plane<double> texture = gl_texture<double>(image, options.radius, orders);
   apply_norm(options.norm, image, options.radius, orders, texture);
   return texture;
@@ -41,12 +41,12 @@ std::vector<SubBands> sub_band_levels(const GreyImage& image, int levels) {
 }
 
 /// CSGV at half resolution. Frees the sub-bands as early as possible.
-/// \param keep  copies those of the first level to `result`
+/// \param keep_sub_bands  whether to copy the sub-bands of the first level to `result`
 template <typename Real>
-Plane<double> half_gradient(const GreyImage& image, const ExtractionOptions& options, bool keep,
-                            Extraction<Real>& result) {
+Plane<double> half_gradient(const GreyImage& image, const ExtractionOptions& options,
+                            bool keep_sub_bands, Extraction<Real>& result) {
   const std::vector<SubBands> levels = sub_band_levels(image, options.levels);
-  if (keep) {
+  if (keep_sub_bands) {
     result.sub_band_ll = converted<Real>(levels.front().ll);
     result.sub_band_lh = converted<Real>(levels.front().lh);
     result.sub_band_hl = converted<Real>(levels.front().hl);
@@ -56,37 +56,37 @@ Plane<double> half_gradient(const GreyImage& image, const ExtractionOptions& opt
 }
 
 template <typename Real>
-Extraction<Real> adaptive(const GreyImage& image, const ExtractionOptions& options,
-                          const WantedPlanes& wanted) {
+Extraction<Real> adaptive_extraction(const GreyImage& image, const ExtractionOptions& options,
+                                     const RequestedPlanes& requested) {
   Extraction<Real> result;
-  const Plane<double> gradient = half_gradient(image, options, wanted.sub_bands, result);
-  if (wanted.csgv) result.csgv = doubled<Real>(gradient, image.height(), image.width());
+  const Plane<double> gradient = half_gradient(image, options, requested.sub_bands, result);
+  if (requested.csgv) result.csgv = doubled<Real>(gradient, image.height(), image.width());
   const Plane<double> orders = order_map(gradient);
-  if (wanted.order) result.order = doubled<Real>(orders, image.height(), image.width());
+  if (requested.order) result.order = doubled<Real>(orders, image.height(), image.width());
   result.texture = options.norm == Norm::additive
                        ? gl_texture<Real>(image, options.radius, orders)
-                       : converted<Real>(normed_texture(image, options, orders));
+                       : converted<Real>(normalised_texture(image, options, orders));
   return result;
 }
 
 template <typename Real>
-Extraction<Real> fixed(const GreyImage& image, const ExtractionOptions& options,
-                       const WantedPlanes& wanted) {
+Extraction<Real> fixed_extraction(const GreyImage& image, const ExtractionOptions& options,
+                                  const RequestedPlanes& requested) {
   Extraction<Real> result;
-  if (wanted.order) {
+  if (requested.order) {
     result.order = Plane<Real>(image.height(), image.width(), static_cast<Real>(options.order));
   }
-  result.texture = converted<Real>(normed_texture(image, options, options.order));
+  result.texture = converted<Real>(normalised_texture(image, options, options.order));
   return result;
 }
 
 template <typename Real>
-Extraction<Real> by_tv_gabor(const GreyImage& image, const TvGaborOptions& options,
-                             const WantedPlanes& wanted) {
+Extraction<Real> extract_by_tv_gabor(const GreyImage& image, const TvGaborOptions& options,
+                                     const RequestedPlanes& requested) {
   TvGaborResult<Real> decomposition = tv_gabor<Real>(image, options);
   Extraction<Real> result;
   result.texture = std::move(decomposition.texture);
-  if (wanted.cartoon) result.cartoon = std::move(decomposition.cartoon);
+  if (requested.cartoon) result.cartoon = std::move(decomposition.cartoon);
   result.components = std::move(decomposition.components);
   result.gap = decomposition.gap;
   result.steps = decomposition.steps;
@@ -95,80 +95,83 @@ Extraction<Real> by_tv_gabor(const GreyImage& image, const TvGaborOptions& optio
 }
 
 template <typename Real>
-Extraction<Real> texture_alone(Plane<Real> texture) {
+Extraction<Real> texture_only(Plane<Real> texture) {
   Extraction<Real> result;
   result.texture = std::move(texture);
   return result;
 }
 
 template <typename Real>
-Extraction<Real> by_method(const GreyImage& image, const ExtractionOptions& options,
-                           const WantedPlanes& wanted) {
+Extraction<Real> extract_by_method(const GreyImage& image, const ExtractionOptions& options,
+                                   const RequestedPlanes& requested) {
   switch (options.method) {
     case Method::fixed:
-      return fixed<Real>(image, options, wanted);
+      return fixed_extraction<Real>(image, options, requested);
     case Method::tv_gabor:
-      return by_tv_gabor<Real>(image, options.tv_gabor, wanted);
+      return extract_by_tv_gabor<Real>(image, options.tv_gabor, requested);
     case Method::gaussian:
-      return texture_alone<Real>(gaussian_texture<Real>(image, options.sigma_px));
+      return texture_only<Real>(gaussian_texture<Real>(image, options.sigma_px));
     case Method::median:
-      return texture_alone<Real>(
+      return texture_only<Real>(
           median_texture<Real>(image, options.radius, options.threshold_grey));
     case Method::edge:
-      return texture_alone<Real>(edge_texture<Real>(image, options.divisor));
+      return texture_only<Real>(edge_texture<Real>(image, options.divisor));
     case Method::luminance:
-      return texture_alone<Real>(luminance_texture<Real>(image));
+      return texture_only<Real>(luminance_texture<Real>(image));
     case Method::adaptive:
       break;
   }
-  return adaptive<Real>(image, options, wanted);
+  return adaptive_extraction<Real>(image, options, requested);
 }
 
-/// The default adaptive and fixed methods have kernels in float. In double the plain code below is
-/// the reference for tests of the kernels.
-bool extracted_by_kernel(const GreyImage&, const ExtractionOptions&, const WantedPlanes&,
-                         Extraction<double>&) {
+/// Tries the kernels, which exist for the default adaptive and fixed methods in single precision.
+/// The other code computes in double precision, and tests compare the kernels with it.
+/// \return whether a kernel computed the result
+bool try_kernel(const GreyImage&, const ExtractionOptions&, const RequestedPlanes&,
+                Extraction<double>&) {
   return false;
 }
-bool extracted_by_kernel(const GreyImage& image, const ExtractionOptions& options,
-                         const WantedPlanes& wanted, Extraction<float>& result) {
+bool try_kernel(const GreyImage& image, const ExtractionOptions& options,
+                const RequestedPlanes& requested, Extraction<float>& result) {
   if (options.norm != Norm::additive) return false;
   if (options.method == Method::fixed) {
-    extract_fixed(image, options.radius, options.order, wanted, result);
+    extract_fixed(image, options.radius, options.order, requested, result);
     return true;
   }
-  const bool plain_gradient =
+  const bool is_default_gradient =
       options.gradient == Gradient::sobel && options.combine == Combine::sum && options.levels == 1;
-  if (options.method != Method::adaptive || !plain_gradient) return false;
-  extract_adaptive(image, options.radius, wanted, result);
+  if (options.method != Method::adaptive || !is_default_gradient) return false;
+  extract_adaptive(image, options.radius, requested, result);
   return true;
 }
 
-/// Adds the wanted by-products that any texture has and that the method did not compute itself.
+/// Adds requested by-products common to all methods, unless the method computed them.
 template <typename Real>
-void add_by_products(const GreyImage& image, const WantedPlanes& wanted, Extraction<Real>& result) {
-  if (wanted.picture && result.picture.empty()) result.picture = texture_picture(result.texture);
+void add_by_products(const GreyImage& image, const RequestedPlanes& requested,
+                     Extraction<Real>& result) {
+  if (requested.picture && result.picture.empty()) result.picture = texture_picture(result.texture);
   result.force = {};
-  if (wanted.force) result.force = tangential_force(result.texture, kForceNeighbourhood);
-  result.enhanced = wanted.enhanced ? converted<Real>(image) : Plane<Real>();
+  if (requested.force) result.force = tangential_force(result.texture, kForceNeighbourhood);
+  result.enhanced = requested.enhanced ? converted<Real>(image) : Plane<Real>();
   for (std::size_t i = 0; i < result.enhanced.size(); ++i) {
     result.enhanced.samples()[i] += result.texture.samples()[i];
   }
 }
 
-/// The planes wanted from the method itself, without those that are made from the control.
-WantedPlanes wanted_of_method(const ExtractionOptions& options, WantedPlanes wanted) {
-  if (options.control != Control::none) wanted.picture = wanted.force = false;
-  return wanted;
+/// The planes that the method must compute: the control provides the others.
+RequestedPlanes planes_of_method(const ExtractionOptions& options, RequestedPlanes requested) {
+  if (options.control != Control::none) requested.picture = requested.force = false;
+  return requested;
 }
 
-/// In double for either precision: in float, 128 + T would be rounded to ties.
+/// Takes a double for both precisions: in float, 128 + T itself would be rounded, creating false
+/// ties.
 std::uint8_t rounded_to_grey(double level) {
   return static_cast<std::uint8_t>(std::clamp(std::floor(level + 0.5), 0.0, 255.0));
 }
 
 template <typename Real, typename LevelOf>
-GreyImage picture_by(const Plane<Real>& texture, LevelOf level_of) {
+GreyImage picture_from(const Plane<Real>& texture, LevelOf level_of) {
   GreyImage picture(texture.height(), texture.width());
   std::ranges::transform(texture.samples(), picture.samples().begin(), [&](Real sample) {
     return rounded_to_grey(level_of(static_cast<double>(sample)));
@@ -177,12 +180,12 @@ GreyImage picture_by(const Plane<Real>& texture, LevelOf level_of) {
 }
 
 template <typename Real>
-GreyImage stretched(const Plane<Real>& texture) {
+GreyImage stretched_picture(const Plane<Real>& texture) {
   const auto [min, max] = std::ranges::minmax_element(texture.samples());
   const auto low = static_cast<double>(*min);
   const double range = static_cast<double>(*max) - low;
   if (!(range > 0.0)) return GreyImage(texture.height(), texture.width());
-  return picture_by(texture, [=](double sample) { return (sample - low) * 255.0 / range; });
+  return picture_from(texture, [=](double sample) { return (sample - low) * 255.0 / range; });
 }
 
 }  // namespace
@@ -195,22 +198,22 @@ void apply_control(const ExtractionOptions& options, Plane<Real>& texture) {
 
 template <typename Real>
 void extract_texture_into(const GreyImage& image, const ExtractionOptions& options,
-                          const WantedPlanes& wanted, Extraction<Real>& result) {
+                          const RequestedPlanes& requested, Extraction<Real>& result) {
   check_options(options);
   if (image.empty()) throw std::invalid_argument("extract_texture: the image is empty");
-  const WantedPlanes of_method = wanted_of_method(options, wanted);
-  if (!extracted_by_kernel(image, options, of_method, result)) {
-    result = by_method<Real>(image, options, of_method);
+  const RequestedPlanes method_planes = planes_of_method(options, requested);
+  if (!try_kernel(image, options, method_planes, result)) {
+    result = extract_by_method<Real>(image, options, method_planes);
   }
   apply_control(options, result.texture);
-  add_by_products(image, wanted, result);
+  add_by_products(image, requested, result);
 }
 
 template <typename Real>
 Extraction<Real> extract_texture(const GreyImage& image, const ExtractionOptions& options,
-                                 const WantedPlanes& wanted) {
+                                 const RequestedPlanes& requested) {
   Extraction<Real> result;
-  extract_texture_into(image, options, wanted, result);
+  extract_texture_into(image, options, requested, result);
   return result;
 }
 
@@ -220,25 +223,25 @@ GreyImage texture_picture(const Plane<Real>& texture, Mapping mapping) {
   require_finite(texture, "texture_picture", "texture");
   switch (mapping) {
     case Mapping::abs:
-      return picture_by(texture, [](double sample) { return std::abs(sample); });
+      return picture_from(texture, [](double sample) { return std::abs(sample); });
     case Mapping::stretch:
-      return stretched(texture);
+      return stretched_picture(texture);
     case Mapping::offset:
       break;
   }
-  return picture_by(texture, [](double sample) { return 128.0 + sample; });
+  return picture_from(texture, [](double sample) { return 128.0 + sample; });
 }
 
 template void apply_control<float>(const ExtractionOptions&, Plane<float>&);
 template void apply_control<double>(const ExtractionOptions&, Plane<double>&);
 template void extract_texture_into<float>(const GreyImage&, const ExtractionOptions&,
-                                          const WantedPlanes&, Extraction<float>&);
+                                          const RequestedPlanes&, Extraction<float>&);
 template void extract_texture_into<double>(const GreyImage&, const ExtractionOptions&,
-                                           const WantedPlanes&, Extraction<double>&);
+                                           const RequestedPlanes&, Extraction<double>&);
 template Extraction<float> extract_texture<float>(const GreyImage&, const ExtractionOptions&,
-                                                  const WantedPlanes&);
+                                                  const RequestedPlanes&);
 template Extraction<double> extract_texture<double>(const GreyImage&, const ExtractionOptions&,
-                                                    const WantedPlanes&);
+                                                    const RequestedPlanes&);
 template GreyImage texture_picture<float>(const Plane<float>&, Mapping);
 template GreyImage texture_picture<double>(const Plane<double>&, Mapping);
 

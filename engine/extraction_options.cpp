@@ -14,7 +14,7 @@ struct MethodEntry {
   std::vector<Parameter> parameters;  ///< in the order in which they are checked
 };
 
-/// An entry for each method, in the order of the enumeration.
+/// One entry per method, in the order of the enumeration.
 const std::vector<MethodEntry>& method_table() {
   using enum Parameter;
   static const std::vector<MethodEntry> table = {
@@ -100,9 +100,9 @@ std::string_view name_of(Method method) {
 
 std::optional<Method> method_from_name(std::string_view name) {
   const auto& table = method_table();
-  const auto found = std::ranges::find(table, name, &MethodEntry::name);
-  if (found == table.end()) return std::nullopt;
-  return static_cast<Method>(found - table.begin());
+  const auto match = std::ranges::find(table, name, &MethodEntry::name);
+  if (match == table.end()) return std::nullopt;
+  return static_cast<Method>(match - table.begin());
 }
 
 std::vector<std::string> method_names() {
@@ -115,8 +115,8 @@ std::vector<Method> methods_with(Parameter parameter) {
   std::vector<Method> methods;
   const auto& table = method_table();
   for (std::size_t i = 0; i < table.size(); ++i) {
-    const bool has_it = std::ranges::count(table[i].parameters, parameter) > 0;
-    if (has_it) methods.push_back(static_cast<Method>(i));
+    const bool has_parameter = std::ranges::count(table[i].parameters, parameter) > 0;
+    if (has_parameter) methods.push_back(static_cast<Method>(i));
   }
   return methods;
 }
@@ -124,7 +124,7 @@ std::vector<Method> methods_with(Parameter parameter) {
 void check_options(const ExtractionOptions& options) {
   const auto index = static_cast<std::size_t>(options.method);
   if (index >= method_table().size()) {
-    throw std::invalid_argument("method: not one of the enumeration");
+    throw std::invalid_argument("method: unknown value");
   }
   for (const Parameter parameter : method_table()[index].parameters) {
     check_parameter(parameter, options);

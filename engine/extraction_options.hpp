@@ -1,4 +1,4 @@
-/// \file The extraction methods, their parameters and the words for them.
+/// \file The extraction methods, their parameters and their names.
 /// Source: docs/method.md, "Options", "TV-Gabor", "Other extractors" and "Controls".
 #pragma once
 
@@ -24,7 +24,7 @@ enum class Method { adaptive, fixed, tv_gabor, gaussian, median, edge, luminance
 /// All method names, in the order of the enumeration.
 [[nodiscard]] std::vector<std::string> method_names();
 
-/// The parameters that methods have; members of ExtractionOptions and TvGaborOptions hold them.
+/// The parameters of methods; their values are members of ExtractionOptions and TvGaborOptions.
 enum class Parameter {
   radius,
   order,
@@ -44,14 +44,14 @@ enum class Parameter {
 /// The methods that have a parameter, in the order of the enumeration.
 [[nodiscard]] std::vector<Method> methods_with(Parameter parameter);
 
-/// The normalisation of the fractional mask. It determines the strength of a texture.
+/// The normalisation of the fractional mask, which determines the strength of a texture.
 enum class Norm {
   additive,  ///< T itself
   sum,  ///< T / S_K: the classical mask divided by its sum; up to (1 - S_K) / S_K times the image
   none  ///< T + S_K (I - mean of the image): the plain mask, which keeps the image's shading
 };
 
-/// How a texture becomes an 8-bit picture. Forces are always made from 128 + T.
+/// How a texture becomes an 8-bit picture. Forces are always computed from 128 + T.
 enum class Mapping {
   offset,  ///< 128 + T
   abs,     ///< |T|
@@ -72,7 +72,7 @@ enum class Combine {
   max
 };
 
-/// The control stimulus that is made from a texture.
+/// The control stimulus computed from a texture.
 enum class Control {
   none,            ///< the texture itself
   phase_scrambled  ///< the same spectrum with random phases: no structure
@@ -92,7 +92,7 @@ inline constexpr auto kControlNames = std::to_array<Named<Control>>(
 /// One oscillation of the Gabor kernel.
 struct GaborComponent {
   double frequency_cycles_per_px = 0.25;  ///< (0, 0.5]
-  double direction_deg = 0.0;             ///< finite; of the oscillation, from x towards y
+  double direction_deg = 0.0;             ///< finite; direction of oscillation, from x towards y
 
   friend bool operator==(const GaborComponent&, const GaborComponent&) = default;
 };
@@ -107,13 +107,13 @@ struct TvGaborOptions {
       {0.25, 0.0}, {0.25, 45.0}, {0.25, 90.0}, {0.25, 135.0}};  ///< at least one, unless automatic
   double gap = 1e-5;     ///< the relative primal-dual gap at which the iteration stops, > 0
   int max_steps = 2000;  ///< >= 1
-  /// The image's strongest oscillation is the only component; `components` is ignored.
+  /// Uses the image's strongest oscillation as the only component and ignores `components`.
   bool automatic = false;
 
   friend bool operator==(const TvGaborOptions&, const TvGaborOptions&) = default;
 };
 
-/// Everything that determines a texture. A method ignores the parameters that it does not have.
+/// Everything that determines a texture. Methods ignore parameters that they do not have.
 struct ExtractionOptions {
   static constexpr int kMaxRadius = 63;
   static constexpr int kMaxLevels = 8;
@@ -122,7 +122,7 @@ struct ExtractionOptions {
   static constexpr double kMaxDivisor = 1e6;
 
   Method method = Method::adaptive;
-  int radius = 2;              ///< K, 1 .. kMaxRadius (adaptive, fixed); of the window (median)
+  int radius = 2;              ///< K (adaptive, fixed), or of the window (median); 1 .. kMaxRadius
   double order = 0.5;          ///< v in [0, 1) (fixed)
   Norm norm = Norm::additive;  ///< (adaptive, fixed)
   Gradient gradient = Gradient::sobel;  ///< (adaptive)
@@ -132,13 +132,13 @@ struct ExtractionOptions {
   double threshold_grey = 4.0;          ///< [0, 255] (median)
   double divisor = 4.0;                 ///< kMinDivisor .. kMaxDivisor (edge)
   TvGaborOptions tv_gabor{};
-  Control control = Control::none;  ///< made from the method's texture (every method)
+  Control control = Control::none;  ///< computed from the texture (every method)
   std::uint64_t control_seed = 0;   ///< of the phases (Control::phase_scrambled)
 
   friend bool operator==(const ExtractionOptions&, const ExtractionOptions&) = default;
 };
 
-/// Checks, without an image, what extract_texture() would check. Ignores the parameters that the
+/// Checks the options as extract_texture() does, without an image. Ignores parameters that the
 /// method does not have.
 /// \throws std::invalid_argument "<parameter>: must be <range>, not <value>"
 void check_options(const ExtractionOptions& options);

@@ -1,4 +1,4 @@
-/// \file Checks that planes from callers have no NaN and no infinity.
+/// \file Checks planes for NaN and infinity.
 #pragma once
 
 #include "core/plane.hpp"
@@ -10,14 +10,15 @@
 
 namespace touchtrial::engine {
 
-/// Whether every sample is finite. Always reads all samples, so that the loop vectorises.
+/// Whether every sample is finite. Reads all samples without an early exit, so that the loop
+/// vectorises.
 template <typename Real>
 [[nodiscard]] bool all_finite(const Plane<Real>& plane) noexcept {
-  unsigned outside = 0;
+  unsigned non_finite = 0;
   for (const Real sample : plane.samples()) {
-    outside |= static_cast<unsigned>(!(std::abs(sample) <= std::numeric_limits<Real>::max()));
+    non_finite |= static_cast<unsigned>(!(std::abs(sample) <= std::numeric_limits<Real>::max()));
   }
-  return outside == 0;
+  return non_finite == 0;
 }
 
 /// \param caller,plane_name  for the message, for instance "tangential_force" and "surface"

@@ -1,4 +1,4 @@
-/// \file The tangential texture force at pixel centres, before any gain.
+/// \file The tangential texture force at pixel centres, before gains are applied.
 /// Source: docs/method.md, "Force field" (paper Eqs. 9-12).
 #pragma once
 
@@ -13,8 +13,8 @@ struct ForceField {
   Plane<Real> y;  ///< along rows, positive downwards in the image
 };
 
-/// F(i) = sum over the neighbours j inside the image of (G_i - G_j)(p_j - p_i) / d^2: from bright
-/// to dark. At the border only existing neighbours count. Real is float or double.
+/// F(i) = sum over the neighbours j inside the image of (G_i - G_j)(p_j - p_i) / d^2. Points from
+/// bright to dark. At the border only existing neighbours count. Real is float or double.
 /// \param surface  G, grey levels, at least 1 x 1
 /// \param neighbourhood  side n of the square neighbourhood, odd, >= 3; may exceed the image
 /// \throws std::invalid_argument if the surface is empty or not finite, or n is even or < 3

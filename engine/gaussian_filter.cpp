@@ -13,10 +13,10 @@
 namespace touchtrial::engine {
 namespace {
 
-constexpr double kMinWeight = 1e-12;  // relative to the middle one
+constexpr double kMinWeight = 1e-12;  // relative to the central weight
 
-/// The mirrored axis has period 2n. From a standard deviation of 3n on, the Gaussian wrapped around
-/// that period is uniform to 1e-19; a wider one would only cost time.
+/// The mirrored axis has period 2n. With a standard deviation of 3n or more, the Gaussian wrapped
+/// around that period is uniform to 1e-19, so a larger sigma would only cost time.
 double effective_sigma(double sigma_px, int n) {
   return std::min(sigma_px, 3.0 * n);
 }
@@ -35,13 +35,13 @@ std::vector<double> half_kernel(double sigma_px) {
   return weights;
 }
 
-/// Adds one pair of taps. As the kernel's sum is 1, it can be applied to the differences from the
+/// Adds one pair of taps. The kernel's sum is 1, so it can be applied to the differences from the
 /// middle sample, which are exactly 0 where the plane is flat.
 template <typename Sample>
-void add_pair(std::span<double> out, const Sample* middle, const Sample* before,
-              const Sample* after, double weight) {
+void add_pair(std::span<double> out, const Sample* middle, const Sample* previous,
+              const Sample* next, double weight) {
   for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i] += weight * ((before[i] - middle[i]) + (after[i] - middle[i]));
+    out[i] += weight * ((previous[i] - middle[i]) + (next[i] - middle[i]));
   }
 }
 

@@ -1,5 +1,5 @@
-/// \file The Gaussian filter: removes the detail of a surface that no device can render, and
-/// separates the texture of an image. Source: docs/method.md, "Rendering" and "Other extractors".
+/// \file The Gaussian filter. It removes surface detail too fine to render, and separates the
+/// texture of an image. Source: docs/method.md, "Rendering" and "Other extractors".
 #pragma once
 
 #include "core/plane.hpp"
@@ -9,9 +9,9 @@
 
 namespace touchtrial::engine {
 
-/// Filters a plane row by row, for callers that do not need the whole result: it needs memory for
-/// two rows and the weights. Sample is double or std::uint8_t. The results are those of
-/// gaussian_filtered() to the last bit. Keeps a reference to the plane. Not thread-safe.
+/// Filters a plane row by row with memory for two rows and the weights. Sample is double or
+/// std::uint8_t. The results equal gaussian_filtered() to the last bit. Keeps a reference to the
+/// plane. Not thread-safe.
 template <typename Sample>
 class GaussianRows {
  public:
@@ -34,7 +34,7 @@ class GaussianRows {
 };
 
 /// Convolves a plane with a sampled Gaussian of sum 1, with half-sample symmetric extension at the
-/// edges. Omits weights below 1e-12 of the middle one; otherwise exact to double rounding. Flat
+/// edges. Omits weights below 1e-12 of the central weight; otherwise exact to double rounding. Flat
 /// areas keep their exact value, and the plane keeps its mean. Thread-safe.
 /// Cost: about 30 * sigma_px multiplications per pixel.
 /// \param plane  at least 1 x 1, any unit

@@ -13,9 +13,9 @@
 namespace touchtrial::engine {
 namespace {
 
-/// The exact differences of one row's pixels from their rings of eight samples at distance k:
-/// 8 D_k = 8 I - (sum of the samples at (+-k, 0), (0, +-k) and (+-k, +-k)), a whole number of at
-/// most 2040 in magnitude.
+/// Exact differences between a row's pixels and their rings of eight samples at distance k: 8 D_k =
+/// 8 I - (sum of the samples at (+-k, 0), (0, +-k) and (+-k, +-k)), a whole number of at most 2040
+/// in magnitude.
 class RingDifferences {
  public:
   /// \param rows  reach >= k; must not move while this object is used
@@ -37,10 +37,10 @@ class RingDifferences {
   std::ptrdiff_t k_;
 };
 
-/// One row of T = v (D_1 + a_2 (D_2 + a_3 (D_3 + ..))), a_k = (k - 1 - v) / k. The differences are
-/// exact, and no term exceeds the one before it: the error does not grow with K.
-void row_of(const ExtendedRows& rows, int radius, std::span<const double> orders,
-            std::span<double> texture) {
+/// Computes one row of T = v (D_1 + a_2 (D_2 + a_3 (D_3 + ..))), a_k = (k - 1 - v) / k. The
+/// differences are exact and terms never grow, so the error does not grow with K.
+void compute_row(const ExtendedRows& rows, int radius, std::span<const double> orders,
+                 std::span<double> texture) {
   const RingDifferences outermost(rows, radius);
   for (std::size_t x = 0; x < texture.size(); ++x) texture[x] = outermost.at(x);
   for (int k = radius - 1; k >= 1; --k) {
@@ -54,22 +54,22 @@ void row_of(const ExtendedRows& rows, int radius, std::span<const double> orders
     texture[x] *= orders[x] / 8;  // a ring has eight samples
   }
 }
-void row_of(const ExtendedRows& rows, int radius, std::span<const float> orders,
-            std::span<float> texture) {
+void compute_row(const ExtendedRows& rows, int radius, std::span<const float> orders,
+                 std::span<float> texture) {
   gl_row(rows, radius, orders.data(), texture.data());
 }
 
-/// \param orders_of_row  takes y and a row to write to; returns that row's orders, followed by a
+/// \param orders_of_row  takes y and a buffer for one row; returns the row's orders, with one
 ///   vector of slack in float
 template <typename Real, typename OrdersOfRow>
-Plane<Real> texture_by_rows(const GreyImage& image, int radius, OrdersOfRow orders_of_row) {
+Plane<Real> compute_texture(const GreyImage& image, int radius, OrdersOfRow orders_of_row) {
   Plane<Real> texture(image.height(), image.width());
   for_each_strip(image.height(), image.width(), [&](Rows strip) {
     AlignedRows<Real> orders(1, static_cast<std::size_t>(image.width()), 0);
     ExtendedRows rows(image, radius, strip.first);
     for (int y = strip.first; y < strip.last; ++y) {
       rows.next_row();
-      row_of(rows, radius, orders_of_row(y, orders.row(0)), texture.row(y));
+      compute_row(rows, radius, orders_of_row(y, orders.row(0)), texture.row(y));
     }
   });
   return texture;
@@ -94,17 +94,17 @@ void apply(Norm norm, const GreyImage& image, Plane<double>& texture, WeightSum 
 template <>
 Plane<double> gl_texture<double>(const GreyImage& image, int radius, double order) {
   const std::vector<double> row(static_cast<std::size_t>(image.width()), order);
-  return texture_by_rows<double>(image, radius,
+  return compute_texture<double>(image, radius,
                                  [&](int, double*) { return std::span<const double>(row); });
 }
 
 template <typename Real>
 Plane<Real> gl_texture(const GreyImage& image, int radius, const Plane<double>& orders) {
   const auto width = static_cast<std::size_t>(image.width());
-  return texture_by_rows<Real>(image, radius, [&](int y, Real* to) {
-    const auto from = orders.row(y / 2);
-    for (std::size_t x = 0; x < width; ++x) to[x] = static_cast<Real>(from[x / 2]);
-    return std::span<const Real>(to, width);
+  return compute_texture<Real>(image, radius, [&](int y, Real* row_orders) {
+    const auto half_orders = orders.row(y / 2);
+    for (std::size_t x = 0; x < width; ++x) row_orders[x] = static_cast<Real>(half_orders[x / 2]);
+    return std::span<const Real>(row_orders, width);
   });
 }
 

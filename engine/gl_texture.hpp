@@ -36,8 +36,8 @@ template <typename Real>
 [[nodiscard]] double gl_weight_sum(double order, int radius);
 
 /// Turns the additive texture T into T / S_K (sum) or T + S_K (I - mean of I) (none); additive
-/// changes nothing. Only in double precision: near v = 1 the sum S_K is small, and the rounding of
-/// 1 - v to float would cost whole grey levels.
+/// changes nothing. In double precision only: near v = 1 the sum S_K is small, and rounding 1 - v
+/// to float would cause errors of whole grey levels.
 /// \param texture  gl_texture<double>(image, radius, order)
 /// Thread-safe.
 void apply_norm(Norm norm, const GreyImage& image, int radius, double order,

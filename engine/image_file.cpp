@@ -14,11 +14,11 @@
 namespace touchtrial::engine {
 namespace {
 
-/// Up to this size a file is read as a whole, so that a failing disk is an error. A larger file is
-/// mapped: if it is not a picture, or contains only a small one, only a few pages are read.
-constexpr std::uintmax_t kMaxReadWhole = std::uintmax_t{1} << 26U;
+/// Up to this size a file is read into memory, so that a disk fault raises an error. A larger file
+/// is mapped, so that few pages are read if it contains no picture or a small one.
+constexpr std::uintmax_t kMaxReadBytes = std::uintmax_t{1} << 26U;
 
-GreyImage read_kind(ByteView file, GreyScale& scale, ImageNotes& notes) {
+GreyImage decode_by_kind(ByteView file, GreyScale& scale, ImageNotes& notes) {
   switch (kind_of_image(file)) {
     case ImageKind::png:
       return read_png(file, scale);
@@ -36,59 +36,61 @@ GreyImage read_kind(ByteView file, GreyScale& scale, ImageNotes& notes) {
   throw std::logic_error("an image kind without a reader");
 }
 
-/// Refuses 16-bit samples that use little of their range, because few grey levels would remain
-/// unnoticed. The camera's number of bits cannot be read from the picture.
+/// Refuses 16-bit samples that use little of their range, because the loss of grey levels would go
+/// unnoticed. A picture does not state its camera's number of bits.
 void check_range(const GreyScale& scale) {
-  const WideSamples& samples = scale.wide();
-  const int used = samples.bits();
-  const std::string bits = std::to_string(used);
-  if (scale.bits() != 0 && used > scale.bits()) {
+  const WideSamples& samples = scale.wide_samples();
+  const int used_bits = samples.bits();
+  const std::string bits = std::to_string(used_bits);
+  if (scale.bits() != 0 && used_bits > scale.bits()) {
     throw ImageFault{"has samples of " + bits + " bits, more than --bits",
                      "give --bits " + bits + ", or save this one as 8 bit if others have fewer"};
   }
-  const std::uint32_t limit = 1U << static_cast<unsigned>(used);
-  if (scale.bits() != 0 || used == 0 || limit > kMinMaxWideSample) return;
-  const std::uint64_t above = samples.above(used);
+  const std::uint32_t limit = 1U << static_cast<unsigned>(used_bits);
+  if (scale.bits() != 0 || used_bits == 0 || limit > kMinMaxWideSample) return;
+  const std::uint64_t samples_above = samples.count_above(used_bits);
   throw ImageFault{
       "uses only " + bits + " of its 16 bits (" +
-          (above == 0 ? "no sample is" : "but for " + std::to_string(above) + " samples, none is") +
-          " above " + std::to_string(limit - 1) + "), of which " +
-          std::to_string(to_8_bit(static_cast<std::uint16_t>(limit - 1)) + 1) +
-          " grey levels would be left",
-      "give --bits with the bits of its camera or scanner, for instance 12, or 16 if it is just "
+          (samples_above == 0 ? "no sample is"
+                              : "only " + std::to_string(samples_above) + " samples are") +
+          " above " + std::to_string(limit - 1) + "), which would leave " +
+          std::to_string(to_8_bit(static_cast<std::uint16_t>(limit - 1)) + 1) + " grey levels",
+      "give --bits with the bits of its camera or scanner, for instance 12, or 16 if it is only "
       "dark; for a study, to `touchtrial stimuli import` or `touchtrial new`"};
 }
 
-Picture decode_file(ByteView file, const SampleScale& samples) {
+Picture decode_file(ByteView file, const SampleScale& sample_scale) {
   if (file.empty()) throw ImageFault{"is empty", "copy or export it again [empty-picture]"};
-  const auto share = [](std::uint64_t part, std::uint64_t all) {
-    return static_cast<double>(part) / static_cast<double>(all);
+  const auto share = [](std::uint64_t part, std::uint64_t total) {
+    return static_cast<double>(part) / static_cast<double>(total);
   };
   Picture picture;
-  GreyScale scale(samples);
-  picture.grey = read_kind(file, scale, picture.notes);
+  GreyScale scale(sample_scale);
+  picture.grey = decode_by_kind(file, scale, picture.notes);
   check_range(scale);
-  // Only of a readable picture, because the notes of a damaged one may be unbounded.
-  const ImageNotes stated = notes_of_image(file);
-  picture.notes.orientation = stated.orientation;
-  picture.notes.pixels_per_mm = stated.pixels_per_mm;
-  picture.notes.camera_dpi = stated.camera_dpi;
-  picture.notes.has_one_bit = stated.has_one_bit;
-  const WideSamples& wide = scale.wide();
-  if (samples.bits != 0 && wide.count() > 0) {
-    picture.notes.cut_share = share(wide.above(samples.bits), wide.count());
+  // The metadata are read after decoding, because a damaged picture may have unbounded metadata.
+  const ImageNotes metadata = notes_of_image(file);
+  picture.notes.orientation = metadata.orientation;
+  picture.notes.pixels_per_mm = metadata.pixels_per_mm;
+  picture.notes.camera_dpi = metadata.camera_dpi;
+  picture.notes.has_one_bit = metadata.has_one_bit;
+  const WideSamples& wide_samples = scale.wide_samples();
+  if (sample_scale.bits != 0 && wide_samples.count() > 0) {
+    picture.notes.cut_share =
+        share(wide_samples.count_above(sample_scale.bits), wide_samples.count());
   }
   picture.notes.transparent_share = share(scale.transparent_pixels(), picture.grey.size());
   return picture;
 }
 
-FileError error_about(const std::string& name, const std::string& what, const std::string& remedy) {
-  return FileError(one_line(name + ": " + what + "; " + remedy));
+FileError error_about(const std::string& name, const std::string& fault,
+                      const std::string& remedy) {
+  return FileError(one_line(name + ": " + fault + "; " + remedy));
 }
 
-/// Calls `decode`, and adds the file's name to its faults.
+/// Calls `decode` and converts its faults to FileError with the file's name.
 template <typename Decode>
-auto named(const std::string& name, const Decode& decode) {
+auto decode_with_file_errors(const std::string& name, const Decode& decode) {
   try {
     return decode();
   } catch (const ImageFault& fault) {
@@ -105,7 +107,7 @@ auto named(const std::string& name, const Decode& decode) {
 Picture read_picture(const std::filesystem::path& path, const SampleScale& scale) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (!error && size > kMaxReadWhole) {
+  if (!error && size > kMaxReadBytes) {
     const MappedFile file(path);
     return decode_picture(file.bytes(), path.string(), scale);
   }
@@ -134,22 +136,22 @@ std::pair<int, int> size_of_image(const std::filesystem::path& path) {
     const MappedFile file(path);
     if (kind_of_image(file.bytes()) == ImageKind::png) return size_of_png(file.bytes());
   } catch (const ImageFault&) {
-    // Reading it reports the fault.
+    // Reading the picture below reports the fault.
   }
   const GreyImage image = read_grey_image(path);
   return {image.width(), image.height()};
 }
 
 Picture decode_picture(ByteView file, const std::string& name, const SampleScale& scale) {
-  return named(name, [&] { return decode_file(file, scale); });
+  return decode_with_file_errors(name, [&] { return decode_file(file, scale); });
 }
 
 GreyImage opacity_of(ByteView file, const std::string& name) {
-  return named(name, [&] {
+  return decode_with_file_errors(name, [&] {
     GreyScale scale{SampleScale{}};
     scale.show_opacity();
     ImageNotes unused;
-    return read_kind(file, scale, unused);
+    return decode_by_kind(file, scale, unused);
   });
 }
 

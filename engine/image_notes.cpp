@@ -20,47 +20,47 @@ bool is_near(double pixels_per_mm, double dots_per_inch) {
   return std::abs(pixels_per_mm * kMmPerInch - dots_per_inch) < 0.1;
 }
 
-std::optional<double> resolution(double x, double y, double unit_mm) {
+std::optional<double> plausible_resolution(double x, double y, double unit_mm) {
   const bool is_square = std::abs(x - y) <= 0.01 * std::max(x, y);
   // Pixel sizes below 1 um or above 100 mm are implausible.
   if (!is_square || !(x / unit_mm >= 0.01) || !(x / unit_mm <= 1000.0)) return std::nullopt;
-  // Defaults of programs for an unknown resolution.
+  // Programs write these defaults for an unknown resolution.
   if (is_near(x / unit_mm, 72.0) || is_near(x / unit_mm, 96.0)) return std::nullopt;
   return x / unit_mm;
 }
 
 /// Whether Exif data contain an exposure, which only a camera writes.
 bool has_exposure(ByteView file, const TiffDirectory& directory) {
-  const std::uint32_t at = directory.value(TiffTag::exif_directory, 0);
-  if (at == 0) return false;
-  const TiffDirectory exif(file, at);
+  const std::uint32_t offset = directory.value(TiffTag::exif_directory, 0);
+  if (offset == 0) return false;
+  const TiffDirectory exif(file, offset);
   return std::ranges::any_of(
       std::array{TiffTag::exposure_time, TiffTag::f_number, TiffTag::sensitivity,
                  TiffTag::time_of_exposure, TiffTag::focal_length, TiffTag::lens_model},
       [&](TiffTag tag) { return exif.has(tag); });
 }
 
-/// The maker of a picture file, which determines the meaning of its resolution.
+/// The device that made a picture file, which determines the meaning of its resolution.
 enum class Maker {
   unknown,
-  named,  ///< a camera or a scanner
+  camera_or_scanner,
   camera,
 };
 
 Maker maker_of(ByteView file, const TiffDirectory& directory) {
   if (has_exposure(file, directory)) return Maker::camera;
-  const bool is_named = directory.has(TiffTag::make) || directory.has(TiffTag::model);
-  return is_named ? Maker::named : Maker::unknown;
+  const bool has_name = directory.has(TiffTag::make) || directory.has(TiffTag::model);
+  return has_name ? Maker::camera_or_scanner : Maker::unknown;
 }
 
 /// A camera's resolution is unrelated to the object. Cameras and their software always write 180,
-/// 240 or 350, which scanners hardly ever use, or 300.
-void weigh_resolution(Maker maker, ImageNotes& notes) {
+/// 240, 300 or 350; of these, scanners use only 300.
+void classify_resolution(Maker maker, ImageNotes& notes) {
   if (!notes.pixels_per_mm) return;
-  const auto is = [&](double dots) { return is_near(*notes.pixels_per_mm, dots); };
-  const bool is_of_camera = maker == Maker::camera || is(180.0) || is(240.0) || is(350.0) ||
-                            (maker == Maker::named && is(300.0));
-  if (!is_of_camera) return;
+  const auto is_dpi = [&](double dots) { return is_near(*notes.pixels_per_mm, dots); };
+  const bool is_from_camera = maker == Maker::camera || is_dpi(180.0) || is_dpi(240.0) ||
+                              is_dpi(350.0) || (maker == Maker::camera_or_scanner && is_dpi(300.0));
+  if (!is_from_camera) return;
   notes.camera_dpi = *notes.pixels_per_mm * kMmPerInch;
   notes.pixels_per_mm.reset();
 }
@@ -76,20 +76,20 @@ ImageNotes notes_of_tiff(ByteView file, Maker& maker) {
   constexpr std::uint32_t kInch = 2;
   constexpr std::uint32_t kCentimetre = 3;
   const std::uint32_t unit = directory.value(TiffTag::resolution_unit, kInch);
-  if (x && y && unit == kInch) notes.pixels_per_mm = resolution(*x, *y, kMmPerInch);
-  if (x && y && unit == kCentimetre) notes.pixels_per_mm = resolution(*x, *y, kMmPerCm);
+  if (x && y && unit == kInch) notes.pixels_per_mm = plausible_resolution(*x, *y, kMmPerInch);
+  if (x && y && unit == kCentimetre) notes.pixels_per_mm = plausible_resolution(*x, *y, kMmPerCm);
   return notes;
 }
 
-/// Exif notes are a TIFF directory within another file.
-void take_exif(ByteView exif, ImageNotes& notes, Maker& maker) {
+/// Reads Exif metadata, a TIFF directory within another file.
+void read_exif(ByteView exif, ImageNotes& notes, Maker& maker) {
   try {
-    const ImageNotes said = notes_of_tiff(exif, maker);
-    notes.orientation = said.orientation;
-    notes.has_one_bit |= said.has_one_bit;
-    if (said.pixels_per_mm) notes.pixels_per_mm = said.pixels_per_mm;
+    const ImageNotes exif_notes = notes_of_tiff(exif, maker);
+    notes.orientation = exif_notes.orientation;
+    notes.has_one_bit |= exif_notes.has_one_bit;
+    if (exif_notes.pixels_per_mm) notes.pixels_per_mm = exif_notes.pixels_per_mm;
   } catch (const ImageFault&) {
-    // Damaged metadata count as absent; other parts of the file may still have some.
+    // Other parts of the file may still have valid metadata.
   }
 }
 
@@ -97,56 +97,56 @@ bool starts_with(ByteView bytes, std::string_view text) {
   return text_of(bytes.first(std::min(bytes.size(), text.size()))) == text;
 }
 
-void take_jfif(ByteView data, ImageNotes& notes) {
+void read_jfif(ByteView data, ImageNotes& notes) {
   const double x = big16(data, 8);
   const double y = big16(data, 10);
-  if (data[7] == 1) notes.pixels_per_mm = resolution(x, y, kMmPerInch);
-  if (data[7] == 2) notes.pixels_per_mm = resolution(x, y, kMmPerCm);
+  if (data[7] == 1) notes.pixels_per_mm = plausible_resolution(x, y, kMmPerInch);
+  if (data[7] == 2) notes.pixels_per_mm = plausible_resolution(x, y, kMmPerCm);
 }
 
 /// Reads the segments before the first scan.
-void take_jpeg(ByteView file, ImageNotes& notes, Maker& maker) {
+void read_jpeg_notes(ByteView file, ImageNotes& notes, Maker& maker) {
   using namespace std::string_view_literals;
   constexpr std::uint32_t kScan = 0xFFDA;
-  for (std::size_t at = 2; big16(file, at) >= 0xFFC0 && big16(file, at) != kScan;) {
-    const ByteView data = bytes_at(file, at + 4, std::max(big16(file, at + 2), 2U) - 2);
-    if (big16(file, at) == 0xFFE0 && starts_with(data, "JFIF\0"sv)) take_jfif(data, notes);
-    if (big16(file, at) == 0xFFE1 && starts_with(data, "Exif\0\0"sv)) {
-      take_exif(data.subspan(6), notes, maker);
+  for (std::size_t offset = 2; big16(file, offset) >= 0xFFC0 && big16(file, offset) != kScan;) {
+    const ByteView data = bytes_at(file, offset + 4, std::max(big16(file, offset + 2), 2U) - 2);
+    if (big16(file, offset) == 0xFFE0 && starts_with(data, "JFIF\0"sv)) read_jfif(data, notes);
+    if (big16(file, offset) == 0xFFE1 && starts_with(data, "Exif\0\0"sv)) {
+      read_exif(data.subspan(6), notes, maker);
     }
-    at += 4 + data.size();
+    offset += 4 + data.size();
   }
 }
 
-void take_png(ByteView file, ImageNotes& notes, Maker& maker) {
-  for (std::size_t at = 8; at < file.size();) {
-    const ByteView data = bytes_at(file, at + 8, big32(file, at));
-    const std::string type = text_of(bytes_at(file, at + 4, 4));
+void read_png_notes(ByteView file, ImageNotes& notes, Maker& maker) {
+  for (std::size_t offset = 8; offset < file.size();) {
+    const ByteView data = bytes_at(file, offset + 8, big32(file, offset));
+    const std::string type = text_of(bytes_at(file, offset + 4, 4));
     if (type == "IEND") return;
     if (type == "IHDR" && data.size() == 13) notes.has_one_bit = data[8] == 1;
     if (type == "pHYs" && data.size() == 9 && data[8] == 1) {
-      notes.pixels_per_mm = resolution(big32(data, 0), big32(data, 4), kMmPerMetre);
+      notes.pixels_per_mm = plausible_resolution(big32(data, 0), big32(data, 4), kMmPerMetre);
     }
-    if (type == "eXIf") take_exif(data, notes, maker);
-    at += 12 + data.size();
+    if (type == "eXIf") read_exif(data, notes, maker);
+    offset += 12 + data.size();
   }
 }
 
-void take_bmp(ByteView file, ImageNotes& notes) {
+void read_bmp_notes(ByteView file, ImageNotes& notes) {
   notes.has_one_bit = little16(file, 28) == 1;
-  notes.pixels_per_mm = resolution(little32(file, 38), little32(file, 42), kMmPerMetre);
+  notes.pixels_per_mm = plausible_resolution(little32(file, 38), little32(file, 42), kMmPerMetre);
 }
 
-void take_notes(ByteView file, ImageNotes& notes, Maker& maker) {
+void read_notes(ByteView file, ImageNotes& notes, Maker& maker) {
   switch (kind_of_image(file)) {
     case ImageKind::png:
-      return take_png(file, notes, maker);
+      return read_png_notes(file, notes, maker);
     case ImageKind::jpeg:
-      return take_jpeg(file, notes, maker);
+      return read_jpeg_notes(file, notes, maker);
     case ImageKind::tiff:
-      return take_exif(file, notes, maker);
+      return read_exif(file, notes, maker);
     case ImageKind::bmp:
-      return take_bmp(file, notes);
+      return read_bmp_notes(file, notes);
     case ImageKind::gif:
     case ImageKind::pnm:
       return;  // these formats have no metadata
@@ -159,11 +159,11 @@ ImageNotes notes_of_image(ByteView file) {
   ImageNotes notes;
   Maker maker = Maker::unknown;
   try {
-    take_notes(file, notes, maker);
+    read_notes(file, notes, maker);
   } catch (const ImageFault&) {
     // Metadata before the damage stay valid.
   }
-  weigh_resolution(maker, notes);
+  classify_resolution(maker, notes);
   if (notes.orientation < 1 || notes.orientation > 8) notes.orientation = 1;
   return notes;
 }
@@ -183,58 +183,58 @@ std::vector<std::string> remarks_on(const ImageNotes& notes) {
   }
   if (notes.has_one_bit) {
     remarks.emplace_back(
-        "has 1 bit a pixel, black or white; scan or export it in grey if it is a photograph");
+        "has 1 bit per pixel, black or white; scan or export it in grey if it is a photograph");
   }
   if (notes.pictures > 1) {
-    remarks.push_back("holds " + std::to_string(notes.pictures) +
+    remarks.push_back("contains " + std::to_string(notes.pictures) +
                       " pictures, and the first is used; save the one you want as a separate file");
   }
   if (notes.transparent_share > 0.0) {
-    remarks.push_back(
-        rounded(100 * notes.transparent_share) +
-        " % of its pixels are transparent to some degree and are darkened, whose edge "
-        "can be felt; crop it to where it is opaque");
+    remarks.push_back(rounded(100 * notes.transparent_share) +
+                      " % of its pixels are partly transparent and are darkened, and their edge "
+                      "can be felt; crop "
+                      "it to its opaque part");
   }
-  if (notes.heights && !notes.has_given_heights) {
-    remarks.push_back("holds heights from " + rounded(notes.heights->first) + " to " +
+  if (notes.heights && !notes.has_user_range) {
+    remarks.push_back("contains heights from " + rounded(notes.heights->first) + " to " +
                       rounded(notes.heights->second) +
                       "; import all pictures of a set with the same --heights");
   }
   if (notes.cut_share > 0.0 && !notes.heights) {
     remarks.push_back(rounded(100 * notes.cut_share) +
-                      " % of its samples take more than --bits and are cut off, as those of hot "
-                      "pixels are; if the picture has more bits, give them");
+                      " % of its samples need more than --bits and are cut off, as for hot pixels; "
+                      "if the picture has more bits, give that number");
   } else if (notes.cut_share > 0.0) {
     remarks.push_back(rounded(100 * notes.cut_share) +
-                      " % of its heights lie outside --heights and are cut off, down to " +
+                      " % of its heights are outside --heights and are cut off, down to " +
                       rounded(notes.heights->first) + " and up to " +
                       rounded(notes.heights->second));
   }
   if (notes.lacks_end) {
     remarks.emplace_back(
-        "lacks its end marker, but has all pixels; copy or export it again if you can");
+        "has no end marker, but has all pixels; copy or export it again if you can");
   }
   return remarks;
 }
 
-GreyImage upright(const GreyImage& image, int orientation) {
+GreyImage turn_upright(const GreyImage& image, int orientation) {
   if (orientation < 2 || orientation > 8) return image;
-  const bool transposed = orientation >= 5;
-  const bool from_right =
+  const bool is_transposed = orientation >= 5;
+  const bool reads_from_right =
       orientation == 2 || orientation == 3 || orientation == 7 || orientation == 8;
-  const bool from_bottom =
+  const bool reads_from_bottom =
       orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7;
-  GreyImage turned(transposed ? image.width() : image.height(),
-                   transposed ? image.height() : image.width());
-  for (int y = 0; y < turned.height(); ++y) {
-    for (int x = 0; x < turned.width(); ++x) {
-      const int row = transposed ? x : y;
-      const int column = transposed ? y : x;
-      turned.at(y, x) = image.at(from_bottom ? image.height() - 1 - row : row,
-                                 from_right ? image.width() - 1 - column : column);
+  GreyImage result(is_transposed ? image.width() : image.height(),
+                   is_transposed ? image.height() : image.width());
+  for (int y = 0; y < result.height(); ++y) {
+    for (int x = 0; x < result.width(); ++x) {
+      const int row = is_transposed ? x : y;
+      const int column = is_transposed ? y : x;
+      result.at(y, x) = image.at(reads_from_bottom ? image.height() - 1 - row : row,
+                                 reads_from_right ? image.width() - 1 - column : column);
     }
   }
-  return turned;
+  return result;
 }
 
 }  // namespace touchtrial::engine

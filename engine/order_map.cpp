@@ -13,48 +13,49 @@
 namespace touchtrial::engine {
 namespace {
 
-/// Pixels of a picture for each sample of its bands and of their CSGV.
-constexpr int kPixels = 4;
+/// Image pixels per sample of its bands and CSGV.
+constexpr int kPixelsPerSample = 4;
 
-/// Combines one row of a band's slopes with a row of the result; each slope covers 2^level samples.
-void take_row(std::span<const double> slopes, int level, Combine combine, std::span<double> to) {
-  for (std::size_t x = 0; x < to.size(); ++x) {
+/// Combines a row of slopes with a row of the result, where each slope covers 2^level samples.
+void combine_row(std::span<const double> slopes, int level, Combine combine,
+                 std::span<double> result) {
+  for (std::size_t x = 0; x < result.size(); ++x) {
     const double slope = slopes[x >> static_cast<unsigned>(level)];
     switch (combine) {
       case Combine::sum:
-        to[x] += slope;
+        result[x] += slope;
         break;
       case Combine::l2:
-        to[x] += slope * slope;
+        result[x] += slope * slope;
         break;
       case Combine::max:
-        to[x] = std::max(to[x], slope);
+        result[x] = std::max(result[x], slope);
         break;
     }
   }
 }
 
-/// Combines the slopes of bands, one after the other.
+/// Combines the slopes of successive bands.
 class Composite {
  public:
   Composite(int height, int width, Gradient gradient, Combine combine)
       : result_(height, width), gradient_(gradient), combine_(combine) {}
 
-  /// \param level  how many doublings bring the band to the result's resolution
-  void take(const Plane<double>& band, int level) {
-    for_each_strip(band.height(), kPixels * band.width(), [&](Rows strip) {
+  /// \param level  number of doublings from the band's to the result's resolution
+  void add(const Plane<double>& band, int level) {
+    for_each_strip(band.height(), kPixelsPerSample * band.width(), [&](Rows strip) {
       GradientRows gradient(band, gradient_);
       for (int y = strip.first; y < strip.last; ++y) {
         const std::span<const double> slopes = gradient.row(y);
         const int end = std::min((y + 1) << level, result_.height());
-        for (int i = y << level; i < end; ++i) take_row(slopes, level, combine_, result_.row(i));
+        for (int i = y << level; i < end; ++i) combine_row(slopes, level, combine_, result_.row(i));
       }
     });
   }
 
   [[nodiscard]] Plane<double> finish() && {
     if (combine_ == Combine::l2) {
-      for_each_strip(result_.height(), kPixels * result_.width(), [this](Rows strip) {
+      for_each_strip(result_.height(), kPixelsPerSample * result_.width(), [this](Rows strip) {
         for (int y = strip.first; y < strip.last; ++y) {
           for (double& sample : result_.row(y)) sample = std::sqrt(sample);
         }
@@ -88,11 +89,12 @@ GradientRows<Sample>::GradientRows(const Plane<Sample>& plane, Gradient gradient
 template <typename Sample>
 void GradientRows<Sample>::filter_columns(int y) {
   const auto above = plane_.row(symmetric_index(y - 1, plane_.height()));
-  const auto here = plane_.row(y);
+  const auto middle = plane_.row(y);
   const auto below = plane_.row(symmetric_index(y + 1, plane_.height()));
   const double weight = gradient_ == Gradient::sobel ? 2.0 : 1.0;
   for (int x = 0; x < plane_.width(); ++x) {
-    smooth(x) = gradient_ == Gradient::central ? here[x] : above[x] + weight * here[x] + below[x];
+    smooth(x) =
+        gradient_ == Gradient::central ? middle[x] : above[x] + weight * middle[x] + below[x];
     slope(x) = below[x] - above[x];
   }
   mirror_ends(&smooth(0), plane_.width(), 1);
@@ -120,14 +122,14 @@ template class GradientRows<double>;
 
 Plane<double> composite_gradient(std::span<const SubBands> levels, Gradient gradient,
                                  Combine combine) {
-  const Plane<double>& first = levels.front().ll;
-  Composite composite(first.height(), first.width(), gradient, combine);
-  composite.take(levels.back().ll, static_cast<int>(levels.size()) - 1);
+  const Plane<double>& first_level = levels.front().ll;
+  Composite composite(first_level.height(), first_level.width(), gradient, combine);
+  composite.add(levels.back().ll, static_cast<int>(levels.size()) - 1);
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const auto level = static_cast<int>(i);
-    composite.take(levels[i].lh, level);
-    composite.take(levels[i].hl, level);
-    composite.take(levels[i].hh, level);
+    composite.add(levels[i].lh, level);
+    composite.add(levels[i].hl, level);
+    composite.add(levels[i].hh, level);
   }
   return std::move(composite).finish();
 }
@@ -139,7 +141,7 @@ Plane<double> composite_gradient(const SubBands& bands) {
 Plane<double> order_map(const Plane<double>& csgv) {
   const double max_csgv = std::ranges::max(csgv.samples());
   Plane<double> orders(csgv.height(), csgv.width());
-  for_each_strip(csgv.height(), kPixels * csgv.width(), [&](Rows strip) {
+  for_each_strip(csgv.height(), kPixelsPerSample * csgv.width(), [&](Rows strip) {
     for (int y = strip.first; y < strip.last; ++y) {
       std::ranges::transform(csgv.row(y), orders.row(y).begin(),
                              [max_csgv](double value) { return order_at(value, max_csgv); });
@@ -152,9 +154,9 @@ template <typename Real>
 Plane<Real> doubled(const Plane<double>& half, int height, int width) {
   Plane<Real> full(height, width);
   for (int y = 0; y < height; ++y) {
-    const auto from = half.row(y / 2);
-    const auto to = full.row(y);
-    for (int x = 0; x < width; ++x) to[x] = static_cast<Real>(from[x / 2]);
+    const auto half_row = half.row(y / 2);
+    const auto full_row = full.row(y);
+    for (int x = 0; x < width; ++x) full_row[x] = static_cast<Real>(half_row[x / 2]);
   }
   return full;
 }

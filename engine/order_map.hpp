@@ -1,5 +1,5 @@
-/// \file The adaptive part of the method: from the sub-bands of an image to its gradient, and from
-/// the gradient to the order of differentiation at each pixel.
+/// \file The adaptive part of the method: computes the gradient of an image from its sub-bands, and
+/// from that the order of differentiation at each pixel.
 /// Source: docs/method.md, "Gradient and order map" and "Options" (paper Eqs. 2-4).
 #pragma once
 
@@ -37,11 +37,11 @@ class GradientRows {
   std::vector<double> norms_;
 };
 
-/// The composite sub-band gradient (CSGV): how steep an image is at a place, in all sub-bands
-/// together. Combines the norms of the gradients of the last level's ll and of every level's
-/// details at the first level's resolution: sample (y, x) covers the image's samples (2y, 2x) to
-/// (2y+1, 2x+1), and the norms of deeper levels are doubled level by level.
-/// \param levels  at least one; each is made from the ll of the level before it; no empty planes
+/// The composite sub-band gradient (CSGV), a measure of local steepness in all sub-bands. Combines
+/// the gradient norms of the last level's ll and of every level's details at the resolution of the
+/// first level, where sample (y, x) covers the image's samples (2y, 2x) to (2y+1, 2x+1). Norms of
+/// deeper levels are enlarged by repetition.
+/// \param levels  at least one; each computed from the ll of the previous level; no empty planes
 /// \return >= 0, exactly 0 everywhere for a flat image
 /// Thread-safe.
 [[nodiscard]] Plane<double> composite_gradient(std::span<const SubBands> levels, Gradient gradient,
@@ -61,7 +61,7 @@ inline constexpr double kSteepAboveCsgv = 128.0;
 /// Thread-safe.
 [[nodiscard]] Plane<double> order_map(const Plane<double>& csgv);
 
-/// A half-resolution plane at the image's resolution: sample (y, x) is half(y / 2, x / 2), rounded
+/// Enlarges a half-resolution plane by repetition: sample (y, x) is half(y / 2, x / 2), rounded
 /// down.
 /// \param half  ceil(height/2) x ceil(width/2) samples
 /// \param height,width  of the image, pixels

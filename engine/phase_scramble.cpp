@@ -28,12 +28,13 @@ std::vector<double> amplitudes_of(const Plane<Real>& texture, double mean, RealF
   return amplitudes;
 }
 
-/// Gives the spectrum of a noise other amplitudes. The noise is real, so its spectrum has the
-/// conjugate symmetry of a real plane, even in the columns that hold both conjugate coefficients.
+/// Sets the amplitudes of a noise spectrum and keeps its phases. The noise is real, so the spectrum
+/// keeps its conjugate symmetry.
 void set_amplitudes(std::span<Coefficient> noise, const std::vector<double>& amplitudes) {
   for (std::size_t i = 0; i < noise.size(); ++i) {
-    const double size = std::abs(noise[i]);
-    noise[i] = size > 0.0 ? noise[i] * (amplitudes[i] / size) : Coefficient(amplitudes[i]);
+    const double magnitude = std::abs(noise[i]);
+    noise[i] =
+        magnitude > 0.0 ? noise[i] * (amplitudes[i] / magnitude) : Coefficient(amplitudes[i]);
   }
 }
 

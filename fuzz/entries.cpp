@@ -160,7 +160,7 @@ void read_as_head(ByteView bytes) {
 void read_as_protected(ByteView bytes) {
   accept_or_refuse([&] {
     const std::string text = text_of(bytes);
-    const auto signer = study::signer_in_clear(text, "study.key");
+    const auto signer = study::unencrypted_signer(text, "study.key");
     if (!signer) return;
     require(text.find("\nsigns " + to_hex(ByteView(*signer)) + "\n") != std::string::npos,
             "a protected file names who signs with it");
@@ -194,17 +194,17 @@ void read_as_inverse3(ByteView bytes) {
     }
   };
   accept_or_call_bad([&] {
-    for (const service::DeviceReport& report : service::report_in(text).devices) {
+    for (const service::DeviceReport& report : service::parse_report(text).devices) {
       require(is_finite(report.position_m) && is_finite(report.velocity_m_s) &&
                   is_finite(report.delivered_n.value_or(Vec3{})),
               "an accepted state is finite");
       require(!report.id.empty(), "a device has a name");
     }
   });
-  accept_or_call_bad([&] { static_cast<void>(service::version_in(text)); });
-  accept_or_call_bad([&] { static_cast<void>(service::sessions_in(text)); });
+  accept_or_call_bad([&] { static_cast<void>(service::parse_version(text)); });
+  accept_or_call_bad([&] { static_cast<void>(service::parse_sessions(text)); });
   accept_or_call_bad(
-      [&] { require(!service::event_in(text).name.empty(), "an event has a name"); });
+      [&] { require(!service::parse_event(text).name.empty(), "an event has a name"); });
 }
 
 }  // namespace touchtrial::fuzz

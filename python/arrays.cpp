@@ -31,7 +31,7 @@ std::string shape_of(const py::array& array) {
   return py::str(array.attr("shape"));
 }
 
-/// Before anything is copied: an array that only repeats a sample may be larger than the memory.
+/// Called before any copy, because a broadcast array may exceed the memory.
 void check_sides(const py::array& array, const std::string& argument) {
   if (array.shape(0) == 0 || array.shape(1) == 0) {
     throw py::value_error(argument + ": has shape " + shape_of(array) +
@@ -39,17 +39,17 @@ void check_sides(const py::array& array, const std::string& argument) {
   }
   const bool too_long = array.shape(0) > engine::kMaxSidePx || array.shape(1) > engine::kMaxSidePx;
   if (too_long || array.shape(0) > engine::kMaxImagePixels / array.shape(1)) {
-    throw py::value_error(argument + ": has shape " + shape_of(array) + ", more than a side of " +
-                          std::to_string(engine::kMaxSidePx) + " or " +
+    throw py::value_error(argument + ": has shape " + shape_of(array) + ", and exceeds a side of " +
+                          std::to_string(engine::kMaxSidePx) + " or a total of " +
                           std::to_string(engine::kMaxImagePixels) + " pixels; crop or shrink it");
   }
 }
 
 template <typename Sample>
-GreyImage grey_image_from(const py::array& given, int channels) {
-  const auto samples = py::array_t<Sample, CStyle::value>::ensure(given);
+GreyImage grey_image_from(const py::array& array, int channels) {
+  const auto samples = py::array_t<Sample, CStyle::value>::ensure(array);
   if (!samples) throw std::bad_alloc();
-  GreyImage image(static_cast<int>(given.shape(0)), static_cast<int>(given.shape(1)));
+  GreyImage image(static_cast<int>(array.shape(0)), static_cast<int>(array.shape(1)));
   if constexpr (sizeof(Sample) == 1) {
     if (channels == 1) {
       std::copy_n(samples.data(), image.size(), image.samples().data());

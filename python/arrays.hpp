@@ -14,11 +14,11 @@
 
 namespace touchtrial::python {
 
-/// A capsule that owns a C++ object: the base of arrays that show its memory.
+/// A capsule that owns a C++ object: the base of arrays that view its memory.
 template <typename Owned>
 [[nodiscard]] std::pair<Owned*, pybind11::capsule> owned_by_python(Owned&& object) {
   auto owner = std::make_unique<Owned>(std::forward<Owned>(object));
-  pybind11::capsule base(owner.get(), [](void* held) { delete static_cast<Owned*>(held); });
+  pybind11::capsule base(owner.get(), [](void* pointer) { delete static_cast<Owned*>(pointer); });
   return {owner.release(), std::move(base)};
 }
 
@@ -26,14 +26,15 @@ template <typename Owned>
 template <typename Sample>
 [[nodiscard]] pybind11::object array_of(Plane<Sample>&& plane) {
   if (plane.empty()) return pybind11::none();
-  const auto [held, base] = owned_by_python(std::move(plane));
-  return pybind11::array_t<Sample>({held->height(), held->width()}, held->samples().data(), base);
+  const auto [owned, base] = owned_by_python(std::move(plane));
+  return pybind11::array_t<Sample>({owned->height(), owned->width()}, owned->samples().data(),
+                                   base);
 }
 
-/// Whether a picture argument is a path; otherwise it holds samples.
+/// Whether a picture argument is a path; otherwise it contains samples.
 [[nodiscard]] bool is_path(const pybind11::handle& image);
 
-/// A picture as 8-bit grey, by the rules of files (docs/method.md, "Images").
+/// A picture as 8-bit grey, converted like a file (docs/method.md, "Images").
 /// \param image  a path, or an array (H, W) or (H, W, channels) of uint8 or uint16 with 1 channel
 ///   (grey), 2 (grey, alpha), 3 (RGB) or 4 (RGBA); rows from the top
 /// \throws FileError as read_grey_image
@@ -41,8 +42,8 @@ template <typename Sample>
 [[nodiscard]] GreyImage grey_image_of(const pybind11::handle& image);
 
 /// \param argument  the array's name, for errors
-/// \param columns  the wanted shape (N, columns), or 0: any two sides
-/// \throws pybind11::type_error unless it has real numbers, value_error for another shape
+/// \param columns  second number of the required shape (N, columns); 0: any two-dimensional shape
+/// \throws pybind11::type_error unless it contains real numbers; value_error for another shape
 [[nodiscard]] pybind11::array_t<double> matrix_of(const pybind11::handle& array,
                                                   const std::string& argument, int columns = 0);
 
@@ -50,7 +51,7 @@ template <typename Sample>
 /// \throws as matrix_of; value_error for more than kMaxImagePixels samples
 [[nodiscard]] Plane<double> plane_of(const pybind11::handle& array, const std::string& argument);
 
-/// Sets an array read-only, because its memory is in use.
+/// Makes an array read-only, because its memory is shared.
 [[nodiscard]] pybind11::array read_only(pybind11::array array);
 
 }  // namespace touchtrial::python

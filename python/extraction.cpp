@@ -32,33 +32,34 @@ constexpr int kMaxForceNeighbourhood = 1001;
 /// A plane's name, as in `extract --dump`, and the option that requests it; null: always computed.
 struct PlaneName {
   std::string_view name;
-  bool engine::WantedPlanes::*wanted;
+  bool engine::RequestedPlanes::*requested;
 };
 constexpr std::array kPlanes = {PlaneName{"image", nullptr},
                                 PlaneName{"texture", nullptr},
-                                PlaneName{"subband_LL", &engine::WantedPlanes::sub_bands},
-                                PlaneName{"subband_LH", &engine::WantedPlanes::sub_bands},
-                                PlaneName{"subband_HL", &engine::WantedPlanes::sub_bands},
-                                PlaneName{"subband_HH", &engine::WantedPlanes::sub_bands},
-                                PlaneName{"csgv", &engine::WantedPlanes::csgv},
-                                PlaneName{"order", &engine::WantedPlanes::order},
-                                PlaneName{"enhanced", &engine::WantedPlanes::enhanced},
-                                PlaneName{"cartoon", &engine::WantedPlanes::cartoon},
-                                PlaneName{"texture_u8", &engine::WantedPlanes::picture},
-                                PlaneName{"force_tangential", &engine::WantedPlanes::force}};
+                                PlaneName{"subband_LL", &engine::RequestedPlanes::sub_bands},
+                                PlaneName{"subband_LH", &engine::RequestedPlanes::sub_bands},
+                                PlaneName{"subband_HL", &engine::RequestedPlanes::sub_bands},
+                                PlaneName{"subband_HH", &engine::RequestedPlanes::sub_bands},
+                                PlaneName{"csgv", &engine::RequestedPlanes::csgv},
+                                PlaneName{"order", &engine::RequestedPlanes::order},
+                                PlaneName{"enhanced", &engine::RequestedPlanes::enhanced},
+                                PlaneName{"cartoon", &engine::RequestedPlanes::cartoon},
+                                PlaneName{"texture_u8", &engine::RequestedPlanes::picture},
+                                PlaneName{"force_tangential", &engine::RequestedPlanes::force}};
 
-engine::WantedPlanes wanted_planes(const std::optional<std::vector<std::string>>& names) {
-  if (!names) return engine::WantedPlanes::all();
-  engine::WantedPlanes wanted;
+engine::RequestedPlanes requested_planes(const std::optional<std::vector<std::string>>& names) {
+  if (!names) return engine::RequestedPlanes::all();
+  engine::RequestedPlanes requested;
   for (const std::string& name : *names) {
-    const auto found = std::ranges::find(kPlanes, name, &PlaneName::name);
-    if (found == kPlanes.end()) {
-      throw py::value_error("planes: there is no " + name + "; choose among " +
-                            listed(kPlanes, ", ", [](const PlaneName& one) { return one.name; }));
+    const auto entry = std::ranges::find(kPlanes, name, &PlaneName::name);
+    if (entry == kPlanes.end()) {
+      throw py::value_error(
+          "planes: there is no " + name + "; choose among " +
+          listed(kPlanes, ", ", [](const PlaneName& plane) { return plane.name; }));
     }
-    if (found->wanted != nullptr) wanted.*found->wanted = true;
+    if (entry->requested != nullptr) requested.*entry->requested = true;
   }
-  return wanted;
+  return requested;
 }
 
 struct PictureAndForce {
@@ -67,107 +68,111 @@ struct PictureAndForce {
 };
 
 PictureAndForce picture_and_force(const std::string& mapping, int neighbourhood) {
-  const auto chosen = value_in(engine::kMappingNames, mapping);
-  if (!chosen) {
+  const auto value = value_in(engine::kMappingNames, mapping);
+  if (!value) {
     throw py::value_error(
         "mapping: there is no " + mapping + "; choose among " +
-        listed(engine::kMappingNames, ", ", [](const auto& one) { return one.name; }));
+        listed(engine::kMappingNames, ", ", [](const auto& named) { return named.name; }));
   }
   if (neighbourhood < 3 || neighbourhood > kMaxForceNeighbourhood || neighbourhood % 2 == 0) {
     throw py::value_error("neighbourhood: is " + std::to_string(neighbourhood) +
                           ", must be odd, from 3 to " + std::to_string(kMaxForceNeighbourhood));
   }
-  return {*chosen, neighbourhood};
+  return {*value, neighbourhood};
 }
 
-/// Extracts, and adds the planes that the engine does not compute along with a texture.
+/// Extracts a texture, and adds the planes that the engine does not compute with it.
 template <typename Real>
-engine::Extraction<Real> extracted(const GreyImage& image, const engine::ExtractionOptions& options,
-                                   const engine::WantedPlanes& wanted,
-                                   const PictureAndForce& further) {
-  engine::WantedPlanes at_once = wanted;
-  const bool other_picture = wanted.picture && further.mapping != engine::Mapping::offset;
-  const bool other_force = wanted.force && further.neighbourhood != kForceNeighbourhood;
-  at_once.picture = wanted.picture && !other_picture;
-  at_once.force = wanted.force && !other_force;
-  auto extraction = engine::extract_texture<Real>(image, options, at_once);
-  if (other_picture)
-    extraction.picture = engine::texture_picture(extraction.texture, further.mapping);
-  if (other_force)
-    extraction.force = engine::tangential_force(extraction.texture, further.neighbourhood);
+engine::Extraction<Real> extract_planes(const GreyImage& image,
+                                        const engine::ExtractionOptions& options,
+                                        const engine::RequestedPlanes& requested,
+                                        const PictureAndForce& picture_options) {
+  engine::RequestedPlanes computed_with_texture = requested;
+  const bool needs_other_picture =
+      requested.picture && picture_options.mapping != engine::Mapping::offset;
+  const bool needs_other_force =
+      requested.force && picture_options.neighbourhood != kForceNeighbourhood;
+  computed_with_texture.picture = requested.picture && !needs_other_picture;
+  computed_with_texture.force = requested.force && !needs_other_force;
+  auto extraction = engine::extract_texture<Real>(image, options, computed_with_texture);
+  if (needs_other_picture)
+    extraction.picture = engine::texture_picture(extraction.texture, picture_options.mapping);
+  if (needs_other_force)
+    extraction.force = engine::tangential_force(extraction.texture, picture_options.neighbourhood);
   return extraction;
 }
 
 py::list components_of(const std::vector<engine::GaborComponent>& components) {
   py::list pairs;
-  for (const engine::GaborComponent& one : components) {
-    pairs.append(py::make_tuple(one.frequency_cycles_per_px, one.direction_deg));
+  for (const engine::GaborComponent& component : components) {
+    pairs.append(py::make_tuple(component.frequency_cycles_per_px, component.direction_deg));
   }
   return pairs;
 }
 
 template <typename Real>
 py::dict extract_as(GreyImage image, const engine::ExtractionOptions& options,
-                    const engine::WantedPlanes& wanted, const PictureAndForce& further) {
-  engine::Extraction<Real> made;
+                    const engine::RequestedPlanes& requested,
+                    const PictureAndForce& picture_options) {
+  engine::Extraction<Real> extraction;
   {
     const py::gil_scoped_release gil_released;
-    made = extracted<Real>(image, options, wanted, further);
+    extraction = extract_planes<Real>(image, options, requested, picture_options);
   }
   py::dict planes;
   planes["image"] = array_of(std::move(image));
-  planes["texture"] = array_of(std::move(made.texture));
-  planes["subband_LL"] = array_of(std::move(made.sub_band_ll));
-  planes["subband_LH"] = array_of(std::move(made.sub_band_lh));
-  planes["subband_HL"] = array_of(std::move(made.sub_band_hl));
-  planes["subband_HH"] = array_of(std::move(made.sub_band_hh));
-  planes["csgv"] = array_of(std::move(made.csgv));
-  planes["order"] = array_of(std::move(made.order));
-  planes["enhanced"] = array_of(std::move(made.enhanced));
-  planes["cartoon"] = array_of(std::move(made.cartoon));
-  planes["texture_u8"] = array_of(std::move(made.picture));
-  planes["force_x"] = array_of(std::move(made.force.x));
-  planes["force_y"] = array_of(std::move(made.force.y));
-  planes["components"] = components_of(made.components);
-  planes["gap"] = made.gap;
-  planes["steps"] = made.steps;
-  planes["converged"] = made.converged;
+  planes["texture"] = array_of(std::move(extraction.texture));
+  planes["subband_LL"] = array_of(std::move(extraction.sub_band_ll));
+  planes["subband_LH"] = array_of(std::move(extraction.sub_band_lh));
+  planes["subband_HL"] = array_of(std::move(extraction.sub_band_hl));
+  planes["subband_HH"] = array_of(std::move(extraction.sub_band_hh));
+  planes["csgv"] = array_of(std::move(extraction.csgv));
+  planes["order"] = array_of(std::move(extraction.order));
+  planes["enhanced"] = array_of(std::move(extraction.enhanced));
+  planes["cartoon"] = array_of(std::move(extraction.cartoon));
+  planes["texture_u8"] = array_of(std::move(extraction.picture));
+  planes["force_x"] = array_of(std::move(extraction.force.x));
+  planes["force_y"] = array_of(std::move(extraction.force.y));
+  planes["components"] = components_of(extraction.components);
+  planes["gap"] = extraction.gap;
+  planes["steps"] = extraction.steps;
+  planes["converged"] = extraction.converged;
   return planes;
 }
 
 py::dict extract(const py::object& image, const engine::ExtractionOptions& options,
                  const std::string& mapping, int neighbourhood, bool in_double,
                  const std::optional<std::vector<std::string>>& planes) {
-  const engine::WantedPlanes wanted = wanted_planes(planes);
-  const PictureAndForce further = picture_and_force(mapping, neighbourhood);
+  const engine::RequestedPlanes requested = requested_planes(planes);
+  const PictureAndForce picture_options = picture_and_force(mapping, neighbourhood);
   GreyImage grey = grey_image_of(image);
-  return in_double ? extract_as<double>(std::move(grey), options, wanted, further)
-                   : extract_as<float>(std::move(grey), options, wanted, further);
+  return in_double ? extract_as<double>(std::move(grey), options, requested, picture_options)
+                   : extract_as<float>(std::move(grey), options, requested, picture_options);
 }
 
-/// The same extraction as `extract` makes, timed without Python: for scripts/bench-python.
+/// Times the extraction of `extract` without Python, for scripts/bench-python.
 double seconds_of_extraction(const py::object& image, bool all_planes) {
   const GreyImage grey = grey_image_of(image);
-  const engine::WantedPlanes wanted =
-      all_planes ? engine::WantedPlanes::all() : engine::WantedPlanes{};
+  const engine::RequestedPlanes requested =
+      all_planes ? engine::RequestedPlanes::all() : engine::RequestedPlanes{};
   const py::gil_scoped_release gil_released;
   const auto start = std::chrono::steady_clock::now();
-  static_cast<void>(engine::extract_texture<float>(grey, {}, wanted));
+  static_cast<void>(engine::extract_texture<float>(grey, {}, requested));
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 std::string evaluate(const std::vector<py::object>& images, bool sweep) {
-  std::vector<analysis::EvaluatedImage> evaluated;
+  std::vector<analysis::EvaluatedImage> results;
   for (const py::object& image : images) {
     const std::string name =
         is_path(image) ? py::module_::import("os").attr("fsencode")(image).cast<std::string>()
-                       : "array " + std::to_string(evaluated.size());
+                       : "array " + std::to_string(results.size());
     const GreyImage grey = grey_image_of(image);
     const py::gil_scoped_release gil_released;
-    evaluated.push_back({name, engine::evaluate_image(grey, sweep)});
+    results.push_back({name, engine::evaluate_image(grey, sweep)});
   }
   const py::gil_scoped_release gil_released;
-  return analysis::evaluation_json(evaluated);
+  return analysis::evaluation_json(results);
 }
 
 }  // namespace

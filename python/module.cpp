@@ -18,11 +18,11 @@ namespace {
 
 namespace py = pybind11;
 
-/// Hands warnings to Python's logger "touchtrial".
+/// Forwards warnings to Python's logger "touchtrial".
 class PythonLog final : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
   void sink_it_(const spdlog::details::log_msg& message) override {
     const std::string text = one_line(std::string(message.payload.data(), message.payload.size()));
-    const py::gil_scoped_acquire held;
+    const py::gil_scoped_acquire gil_acquired;
     try {
       py::module_::import("logging").attr("getLogger")("touchtrial").attr("warning")("%s", text);
     } catch (py::error_already_set& error) {
@@ -43,13 +43,13 @@ void add_error(py::module_& module) {
   error.attr("__module__") = "touchtrial";
   error.doc() =
       "An error that a user can cause: one line with the cause, the place and the remedy.";
-  py::register_exception_translator([](std::exception_ptr thrown) {
+  py::register_exception_translator([](std::exception_ptr failure) {
     try {
-      if (thrown) std::rethrow_exception(thrown);
-    } catch (const Error& known) {
-      PyErr_SetString(error.ptr(), one_line(known.what()).c_str());
-    } catch (const std::filesystem::filesystem_error& failed) {
-      PyErr_SetString(error.ptr(), one_line(failed.what()).c_str());
+      if (failure) std::rethrow_exception(failure);
+    } catch (const Error& program_error) {
+      PyErr_SetString(error.ptr(), one_line(program_error.what()).c_str());
+    } catch (const std::filesystem::filesystem_error& file_error) {
+      PyErr_SetString(error.ptr(), one_line(file_error.what()).c_str());
     }
   });
 }

@@ -51,24 +51,24 @@ struct FieldSource {
   Plane<double> texture;
 };
 
-FieldSource source_of(const py::object& given) {
-  const bool is_texture = !is_path(given) && py::module_::import("numpy")
-                                                     .attr("asarray")(given)
-                                                     .attr("dtype")
-                                                     .attr("kind")
-                                                     .cast<std::string>() == "f";
-  if (is_texture) return {{}, plane_of(given, "texture")};
-  return {grey_image_of(given), {}};
+FieldSource read_source(const py::object& source) {
+  const bool is_texture = !is_path(source) && py::module_::import("numpy")
+                                                      .attr("asarray")(source)
+                                                      .attr("dtype")
+                                                      .attr("kind")
+                                                      .cast<std::string>() == "f";
+  if (is_texture) return {{}, plane_of(source, "texture")};
+  return {grey_image_of(source), {}};
 }
 
-engine::TextureField made_field(const FieldSource& source, const engine::ExtractionOptions& method,
+engine::TextureField make_field(const FieldSource& source, const engine::ExtractionOptions& method,
                                 const engine::RenderingOptions& rendering) {
   if (source.image.empty()) return engine::make_texture_field(source.texture, rendering);
-  std::optional<study::ExtractedTexture> none;
-  return study::build_field(source.image, method, rendering, none, false).field;
+  std::optional<study::ExtractedTexture> unused_cache;
+  return study::build_field(source.image, method, rendering, unused_cache, false).field;
 }
 
-/// Fields with common gains, like the stimuli of a study.
+/// Fields with common gains, like a study's stimuli.
 std::vector<std::shared_ptr<Field>> force_fields(const std::vector<py::object>& sources,
                                                  const engine::ExtractionOptions& method,
                                                  const std::string& rendering) {
@@ -76,16 +76,16 @@ std::vector<std::shared_ptr<Field>> force_fields(const std::vector<py::object>& 
   const engine::RenderingOptions options = rendering_options(rendering);
   std::vector<std::shared_ptr<Field>> fields;
   std::vector<engine::FieldView> views;
-  for (const py::object& one : sources) {
-    const FieldSource source = source_of(one);
+  for (const py::object& object : sources) {
+    const FieldSource source = read_source(object);
     const py::gil_scoped_release gil_released;
-    fields.push_back(std::make_shared<Field>(made_field(source, method, options), options));
+    fields.push_back(std::make_shared<Field>(make_field(source, method, options), options));
     views.push_back(fields.back()->view());
   }
   const py::gil_scoped_release gil_released;
   const engine::StudyGains gains = engine::choose_gains(views, options);
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    fields[i]->set_gains(gains.of_field[i], gains.over_budget);
+    fields[i]->set_gains(gains.per_field[i], gains.over_budget);
   }
   return fields;
 }
@@ -104,27 +104,27 @@ py::array lateral_force_of(const Field& field) {
   }
   const engine::ForceField<double>& force = lateral.force;
   py::array_t<double> newtons({force.x.height(), force.x.width(), 2});
-  double* to = newtons.mutable_data();
+  double* output = newtons.mutable_data();
   for (std::size_t i = 0; i < force.x.size(); ++i) {
-    *to++ = lateral.n_per_grey * force.x.samples()[i];
-    *to++ = lateral.n_per_grey * force.y.samples()[i];
+    *output++ = lateral.n_per_grey * force.x.samples()[i];
+    *output++ = lateral.n_per_grey * force.y.samples()[i];
   }
   return newtons;
 }
 
 py::dict statistics_of(const Field& field) {
-  engine::FieldStatistics found;
+  engine::FieldStatistics values;
   {
     const py::gil_scoped_release gil_released;
-    found = engine::field_statistics(field.view(), field.gains(), field.options());
+    values = engine::field_statistics(field.view(), field.gains(), field.options());
   }
   py::dict statistics;
-  statistics["tangential_rms_n"] = found.tangential_rms_n;
-  statistics["tangential_p999_n"] = found.tangential_p999_n;
-  statistics["normal_rms_n"] = found.normal_rms_n;
-  statistics["stiffness_p99_n_per_mm"] = found.stiffness_p99_n_per_mm;
-  statistics["share_below_1_mm"] = found.share_below_1_mm;
-  statistics["share_above_250_hz"] = found.share_above_250_hz;
+  statistics["tangential_rms_n"] = values.tangential_rms_n;
+  statistics["tangential_p999_n"] = values.tangential_p999_n;
+  statistics["normal_rms_n"] = values.normal_rms_n;
+  statistics["stiffness_p99_n_per_mm"] = values.stiffness_p99_n_per_mm;
+  statistics["share_below_1_mm"] = values.share_below_1_mm;
+  statistics["share_above_250_hz"] = values.share_above_250_hz;
   return statistics;
 }
 
@@ -140,25 +140,25 @@ py::dict gains_of(const Field& field) {
 std::vector<Vec3> differences(const double* path, std::size_t count, double dt_s) {
   std::vector<Vec3> velocities(count);
   for (std::size_t i = 1; i < count; ++i) {
-    const double* now = path + 3 * i;
-    velocities[i] = {(now[0] - now[-3]) / dt_s, (now[1] - now[-2]) / dt_s,
-                     (now[2] - now[-1]) / dt_s};
+    const double* row = path + 3 * i;
+    velocities[i] = {(row[0] - row[-3]) / dt_s, (row[1] - row[-2]) / dt_s,
+                     (row[2] - row[-1]) / dt_s};
   }
   return velocities;
 }
 
-std::vector<Vec3> velocities_along(const py::array_t<double>& path, const py::object& given,
-                                   std::optional<double> dt_s) {
+std::vector<Vec3> velocities_for(const py::array_t<double>& path, const py::object& velocity_array,
+                                 std::optional<double> dt_s) {
   const auto count = static_cast<std::size_t>(path.shape(0));
-  if (dt_s && !given.is_none()) {
+  if (dt_s && !velocity_array.is_none()) {
     throw py::value_error("render: give dt_s or velocities_mm_s, not both");
   }
   if (dt_s) {
     if (!(*dt_s > 0.0)) throw py::value_error("dt_s: must be above 0");
     return differences(path.data(), count, *dt_s);
   }
-  if (given.is_none()) return std::vector<Vec3>(count);
-  const py::array_t<double> velocities = matrix_of(given, "velocities_mm_s", 3);
+  if (velocity_array.is_none()) return std::vector<Vec3>(count);
+  const py::array_t<double> velocities = matrix_of(velocity_array, "velocities_mm_s", 3);
   if (velocities.shape(0) != path.shape(0)) {
     throw py::value_error("velocities_mm_s: has " + std::to_string(velocities.shape(0)) +
                           " rows, and the path has " + std::to_string(path.shape(0)));
@@ -174,19 +174,19 @@ std::vector<Vec3> velocities_along(const py::array_t<double>& path, const py::ob
 py::array_t<double> render(const Field& field, const py::object& path_mm,
                            std::optional<double> dt_s, const py::object& velocities_mm_s) {
   const py::array_t<double> path = matrix_of(path_mm, "path_mm", 3);
-  const std::vector<Vec3> velocities = velocities_along(path, velocities_mm_s, dt_s);
+  const std::vector<Vec3> velocities = velocities_for(path, velocities_mm_s, dt_s);
   py::array_t<double> forces({path.shape(0), py::ssize_t{3}});
-  const double* at = path.data();
-  double* to = forces.mutable_data();
+  const double* position = path.data();
+  double* output = forces.mutable_data();
   const py::gil_scoped_release gil_released;
   const engine::RenderingModel model(field.view(), field.options(), field.gains());
   engine::Bristle touch;
   for (const Vec3& velocity : velocities) {
-    const Vec3 force = model.force_n({at[0], at[1], at[2]}, velocity, touch);
-    at += 3;
-    *to++ = force.x;
-    *to++ = force.y;
-    *to++ = force.z;
+    const Vec3 force = model.force_n({position[0], position[1], position[2]}, velocity, touch);
+    position += 3;
+    *output++ = force.x;
+    *output++ = force.y;
+    *output++ = force.z;
   }
   return forces;
 }
@@ -230,7 +230,8 @@ void add_rendering(py::module_& module) {
       .def_property_readonly("over_budget", &Field::over_budget,
                              "Whether explicit gains exceed the stiffness budget.")
       .def("lateral_force", &lateral_force_of,
-           "(H, W, 2) newtons at the pixels' centres, x then y, before the limit of the force; for "
+           "(H, W, 2) newtons at the pixels' centres, x then y, before the force limit is applied; "
+           "for "
            "surface at a load of 0.7 N.")
       .def("statistics", &statistics_of,
            "Numbers that predict how the field feels; docs/method.md defines them.");

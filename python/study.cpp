@@ -35,24 +35,25 @@ namespace fs = std::filesystem;
 /// because the prompt and the opened keys are global to the process.
 class Passphrase {
  public:
-  explicit Passphrase(std::optional<std::string> passphrase) : lock_(one_at_a_time()) {
-    study::ask_passphrases_with([passphrase = std::move(passphrase)](const fs::path&, int attempt) {
-      return attempt == 1 ? passphrase : std::nullopt;
-    });
+  explicit Passphrase(std::optional<std::string> passphrase) : lock_(passphrase_mutex()) {
+    study::set_passphrase_prompt(
+        [passphrase = std::move(passphrase)](const fs::path&, int attempt) {
+          return attempt == 1 ? passphrase : std::nullopt;
+        });
   }
-  ~Passphrase() { study::ask_passphrases_with({}); }
+  ~Passphrase() { study::set_passphrase_prompt({}); }
   Passphrase(const Passphrase&) = delete;
   Passphrase& operator=(const Passphrase&) = delete;
 
  private:
-  static std::mutex& one_at_a_time() {
+  static std::mutex& passphrase_mutex() {
     static std::mutex mutex;
     return mutex;
   }
   std::lock_guard<std::mutex> lock_;
 };
 
-record::StudyStore opened(const std::string& database) {
+record::StudyStore open_unblinded(const std::string& database) {
   record::StudyStore store =
       record::StudyStore::open(database, record::StudyStore::Access::read_only);
   const record::StudyState state = store.state();
@@ -67,16 +68,16 @@ record::StudyStore opened(const std::string& database) {
 class Study {
  public:
   Study(const std::string& database, const fs::path& key)
-      : store_(opened(database)),
+      : store_(open_unblinded(database)),
         key_(app::key_of_database(store_, database, key)),
         outcomes_(app::outcomes_of(store_, key_)),
         keys_(analysis::person_keys(store_, key_)) {}
 
   [[nodiscard]] const analysis::Outcomes& outcomes() const { return outcomes_; }
 
-  /// As `report --json` prints it.
+  /// The output of `report --json`.
   [[nodiscard]] std::string report() const {
-    const std::lock_guard lock(one_at_a_time_);
+    const std::lock_guard lock(store_mutex_);
     const analysis::TraceSource traces{store_, key_};
     return app::with_levels(
                analysis::analysis_of(outcomes_.design).results(outcomes_, {.source = &traces}),
@@ -84,24 +85,24 @@ class Study {
         ->json();
   }
 
-  /// As `export --format csv` writes them, except the consents.
+  /// The tables of `export --format csv`, without the consents.
   [[nodiscard]] std::vector<analysis::ResultTable> tables() const {
-    const std::lock_guard lock(one_at_a_time_);
+    const std::lock_guard lock(store_mutex_);
     return analysis::exported_tables(store_, outcomes_);
   }
 
-  /// \throws std::out_of_range if the study has no such visible trial
+  /// \throws std::out_of_range if the study does not show such a trial
   [[nodiscard]] record::Trace trace(int session, int trial) const {
-    const auto found =
-        std::ranges::find_if(outcomes_.trials, [&](const analysis::TrialOutcome& one) {
-          return one.row.session == session && one.row.trial == trial;
+    const auto match =
+        std::ranges::find_if(outcomes_.trials, [&](const analysis::TrialOutcome& outcome) {
+          return outcome.row.session == session && outcome.row.trial == trial;
         });
-    if (found == outcomes_.trials.end()) {
-      throw std::out_of_range("the study shows no trial " + std::to_string(trial) + " of session " +
-                              std::to_string(session));
+    if (match == outcomes_.trials.end()) {
+      throw std::out_of_range("the outcomes contain no trial " + std::to_string(trial) +
+                              " of session " + std::to_string(session));
     }
-    const std::lock_guard lock(one_at_a_time_);
-    return analysis::open_trace(store_.sealed_trace(session, trial), found->row, keys_);
+    const std::lock_guard lock(store_mutex_);
+    return analysis::open_trace(store_.sealed_trace(session, trial), match->row, keys_);
   }
 
  private:
@@ -109,13 +110,13 @@ class Study {
   study::StudyKey key_;
   analysis::Outcomes outcomes_;
   analysis::SessionKeys keys_;
-  mutable std::mutex one_at_a_time_;  ///< guards the store
+  mutable std::mutex store_mutex_;
 };
 
 std::unique_ptr<Study> read(const std::string& database, const fs::path& key,
                             const std::optional<std::string>& passphrase) {
   const py::gil_scoped_release gil_released;
-  const Passphrase answers(passphrase);
+  const Passphrase prompt(passphrase);
   return std::make_unique<Study>(database, key);
 }
 
@@ -142,17 +143,17 @@ struct CellToNumber {
   }
 };
 
-/// int64 for whole numbers, float64 for numbers and for columns with missing ones, else objects.
+/// int64 for whole numbers, float64 for other numbers or with missing ones, otherwise objects.
 py::object column_of(const analysis::DataTable& table, std::size_t column) {
-  const auto all = [&](auto holds) {
-    return std::ranges::all_of(table.rows, [&](const auto& row) { return holds(row[column]); });
+  const auto all_cells = [&](auto condition) {
+    return std::ranges::all_of(table.rows, [&](const auto& row) { return condition(row[column]); });
   };
-  if (all([](const auto& cell) { return std::holds_alternative<std::int64_t>(cell); })) {
+  if (all_cells([](const auto& cell) { return std::holds_alternative<std::int64_t>(cell); })) {
     std::vector<std::int64_t> numbers;
     for (const auto& row : table.rows) numbers.push_back(std::get<std::int64_t>(row[column]));
     return py::array_t<std::int64_t>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
   }
-  if (all([](const auto& cell) { return !std::holds_alternative<std::string>(cell); })) {
+  if (all_cells([](const auto& cell) { return !std::holds_alternative<std::string>(cell); })) {
     std::vector<double> numbers;
     for (const auto& row : table.rows) numbers.push_back(std::visit(CellToNumber{}, row[column]));
     return py::array_t<double>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
@@ -171,12 +172,12 @@ py::dict tables_of(const Study& study) {
     return study.tables();
   }();
   py::dict by_name;
-  for (const analysis::ResultTable& one : tables) {
+  for (const analysis::ResultTable& result : tables) {
     py::dict columns;
-    for (std::size_t i = 0; i < one.table.columns.size(); ++i) {
-      columns[one.table.columns[i].c_str()] = column_of(one.table, i);
+    for (std::size_t i = 0; i < result.table.columns.size(); ++i) {
+      columns[result.table.columns[i].c_str()] = column_of(result.table, i);
     }
-    by_name[fs::path(one.file).stem().c_str()] = columns;
+    by_name[fs::path(result.file).stem().c_str()] = columns;
   }
   return by_name;
 }
@@ -194,22 +195,22 @@ py::tuple trace_of(const Study& study, int session, int trial) {
                         py::array_t<double>({samples->size(), std::size_t{6}}, first, base));
 }
 
-/// \param jobs  threads; 0: one for each core
+/// \param jobs  threads; 0: one per core
 std::string simulate(const fs::path& study, const fs::path& database, int participants,
-                     std::uint64_t seed, const fs::path& subject, const std::string& on, int jobs,
-                     int first_participant, bool keep_blind) {
+                     std::uint64_t seed, const fs::path& subject, const std::string& hand_device,
+                     int jobs, int first_participant, bool keep_blind) {
   const py::gil_scoped_release gil_released;
   if (jobs == 0) jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  const app::StudyToSimulate wanted{.study = study,
-                                    .database = database,
-                                    .subject = subject,
-                                    .on = on,
-                                    .options = {.participants = participants,
-                                                .seed = seed,
-                                                .jobs = jobs,
-                                                .first_participant = first_participant},
-                                    .keep_blind = keep_blind};
-  return app::simulation_json(wanted, app::simulate_study(wanted));
+  const app::StudyToSimulate request{.study = study,
+                                     .database = database,
+                                     .subject = subject,
+                                     .hand_device = hand_device,
+                                     .options = {.participants = participants,
+                                                 .seed = seed,
+                                                 .jobs = jobs,
+                                                 .first_participant = first_participant},
+                                     .keep_blind = keep_blind};
+  return app::simulation_json(request, app::simulate_study(request));
 }
 
 }  // namespace
@@ -218,7 +219,7 @@ void add_studies(py::module_& module) {
   py::class_<Study>(module, "Study", "An unblinded study, opened for reading.")
       .def("report", &Study::report, py::call_guard<py::gil_scoped_release>(),
            "The text that `touchtrial report --json` prints.")
-      .def("tables", &tables_of, "Columns by table and name, as `export --format csv` has them.")
+      .def("tables", &tables_of, "Columns by table and name, as in `export --format csv`.")
       .def("trace", &trace_of, py::arg("session"), py::arg("trial"),
            "The rate in Hz, and (N, 6) positions in mm and forces in N.")
       .def_property_readonly("simulated",

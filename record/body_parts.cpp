@@ -26,23 +26,23 @@ nlohmann::json object_of(const std::string& text) {
 BodyParts split_body(EventKind kind, const std::string& body) {
   const std::vector<ListedMember>& members = members_of(kind);
   if (std::ranges::none_of(members, is_sealed)) return {body, ""};
-  nlohmann::json shown = nlohmann::json::object();
+  nlohmann::json clear = nlohmann::json::object();
   nlohmann::json hidden = nlohmann::json::object();
-  const nlohmann::json whole = object_of(body);
-  for (const auto& item : whole.items()) {
+  const nlohmann::json object = object_of(body);
+  for (const auto& item : object.items()) {
     const bool is_clear = std::ranges::any_of(members, [&](const ListedMember& listed) {
       return listed.member.key == item.key() && !is_sealed(listed);
     });
-    (is_clear ? shown : hidden)[item.key()] = item.value();
+    (is_clear ? clear : hidden)[item.key()] = item.value();
   }
-  return {shown.dump(), hidden.empty() ? "" : hidden.dump()};
+  return {clear.dump(), hidden.empty() ? "" : hidden.dump()};
 }
 
-std::string joined_body(const BodyParts& parts) {
+std::string join_body(const BodyParts& parts) {
   if (parts.hidden.empty()) return parts.clear;
-  nlohmann::json whole = object_of(parts.clear);
-  whole.update(object_of(parts.hidden));
-  return whole.dump();
+  nlohmann::json object = object_of(parts.clear);
+  object.update(object_of(parts.hidden));
+  return object.dump();
 }
 
 std::size_t sealed_padding(EventKind kind) {

@@ -25,31 +25,32 @@ std::string trace_of(const TrialId& id) {
   return "trace of trial " + std::to_string(id.second);
 }
 
-/// Checks the signatures of one file chain. A partial check covers the last event, which vouches
-/// for the events before it, and unblindings.
+/// Checks the signatures of one file chain. A partial check covers only unblindings and the
+/// last event, which vouches for the earlier ones.
 class SignatureCheck {
  public:
-  explicit SignatureCheck(TraceCheck depth) : every_(depth == TraceCheck::full) {}
+  explicit SignatureCheck(TraceCheck checks) : checks_every_(checks == TraceCheck::full) {}
 
   void add(const Event& event, bool is_signed) {
     if (!signatories_) signatories_.emplace(event);
     if (!is_signed && !event.signature.empty()) {
       throw EventFault(event, "follows from the stations' chains, but has a signature");
     }
-    last_ = is_signed ? std::optional(event) : std::nullopt;
-    if (last_ && (every_ || event.kind == EventKind::study_unblinded)) signatories_->require(event);
+    last_signed_ = is_signed ? std::optional(event) : std::nullopt;
+    if (last_signed_ && (checks_every_ || event.kind == EventKind::study_unblinded))
+      signatories_->require(event);
   }
   void finish() const {
-    if (last_) signatories_->require(*last_);
+    if (last_signed_) signatories_->require(*last_signed_);
   }
 
  private:
-  bool every_;
+  bool checks_every_;
   std::optional<Signatories> signatories_;
-  std::optional<Event> last_;
+  std::optional<Event> last_signed_;
 };
 
-/// How many sessions are in memory at once, for as many threads as there are.
+/// The maximum number of sessions in memory at once, regardless of the number of threads.
 constexpr std::size_t kParallelSessions = 16;
 
 /// One session in the pipeline of the check: its result or its fault.
@@ -57,7 +58,7 @@ struct SessionInFlight {
   int session = 0;
   const SessionOnFile* on_file = nullptr;
   std::vector<Event> events;
-  std::exception_ptr unreadable;  ///< after `events`
+  std::exception_ptr read_fault;  ///< why the event after `events` cannot be read
   std::map<int, TraceClaim> claims;
   std::exception_ptr fault;
 
@@ -66,7 +67,7 @@ struct SessionInFlight {
       SessionCheck check(session, *on_file, commitment);
       DerivedRows rows;
       for (const Event& event : events) check.add(event, rows);
-      if (unreadable) std::rethrow_exception(unreadable);
+      if (read_fault) std::rethrow_exception(read_fault);
       check.finish(rows);
       claims = check.claims();
       if (reader) reader(session, std::move(events));
@@ -86,7 +87,7 @@ class Inspection {
   void run(TraceCheck traces) {
     if (traces == TraceCheck::full) inspect_structure();
     const std::vector<Event> collected = inspect_stations(traces);
-    if (is_collected_) file_ = FileChain(UniquePlaces::in_the_end);
+    if (is_collected_) file_ = FileChain(UniquePlaces::at_end);
     SignatureCheck signatures(traces);
     walk(0, [&](const Event& event) {
       if (!collected.empty()) inspect_collected(event, collected);
@@ -105,14 +106,14 @@ class Inspection {
 
  private:
   void inspect_structure() const {
-    // Not quick_check, which does not check indices.
+    // This is not quick_check, which does not check indices.
     Query query = database_.query("PRAGMA integrity_check(1)");
     if (!query.step()) return;
     const std::string finding = query.text(0);
     if (finding != "ok") throw EventFault(0, kNoEvent, "the file is damaged: " + finding);
   }
 
-  /// Checks every event of a chain against the one before it.
+  /// Checks every event of a chain against the previous one.
   void walk(int session, const EventVisitor& visit) const {
     ChainLink chain(session);
     for_each_event(database_, session, [&](const Event& event) {
@@ -131,7 +132,8 @@ class Inspection {
     for (int station = 1; station <= -lowest; ++station) {
       stations.push_back(inspect_station(station, traces));
       if (station > 1 && !comes_before(stations[stations.size() - 2], stations.back())) {
-        throw EventFault(-station, kNoEvent, "does not come after that of the station before");
+        throw EventFault(-station, kNoEvent,
+                         "is not in the order of stations: it belongs before the previous station");
       }
     }
     if (stations.empty()) return {};
@@ -146,17 +148,17 @@ class Inspection {
   }
 
   [[nodiscard]] StationChain inspect_station(int station, TraceCheck traces) const {
-    StationChain found{.name = "station " + std::to_string(station), .events = {}};
+    StationChain chain{.name = "station " + std::to_string(station), .events = {}};
     FileChain file;
     SignatureCheck signatures(traces);
     walk(-station, [&](const Event& event) {
       file.add(event);
       signatures.add(event, /*is_signed=*/true);
-      found.events.push_back(event);
+      chain.events.push_back(event);
     });
     signatures.finish();
-    if (!station_identity(found.events)) throw EventFault(-station, kNoEvent, "opens no session");
-    return found;
+    if (!station_identity(chain.events)) throw EventFault(-station, kNoEvent, "opens no session");
+    return chain;
   }
 
   /// A collected study's chain begins with the chain collected from its stations; later decisions
@@ -164,19 +166,19 @@ class Inspection {
   void inspect_collected(const Event& event, const std::vector<Event>& collected) const {
     if (event.sequence < static_cast<std::int64_t>(collected.size())) {
       if (event.hash == collected[static_cast<std::size_t>(event.sequence)].hash) return;
-      throw EventFault(0, event.sequence, "is not what the stations' chains come to");
+      throw EventFault(0, event.sequence, "differs from the chain collected from the stations");
     }
     if (event.kind == EventKind::session_opened || event.kind == EventKind::session_closed ||
         event.kind == EventKind::participant_replaced) {
       throw EventFault(0, event.sequence,
-                       "belongs to no station; a collected study has no sessions of its own");
+                       "was added after collecting; a collected study has no sessions of its own");
     }
   }
 
   void inspect_length(const std::vector<Event>& collected) const {
     if (collected.empty()) return;
     if (!read_event(database_, 0, static_cast<std::int64_t>(collected.size()) - 1)) {
-      throw EventFault(0, kNoEvent, "lacks events that the stations' chains come to");
+      throw EventFault(0, kNoEvent, "lacks events of the chain collected from the stations");
     }
   }
 
@@ -195,15 +197,15 @@ class Inspection {
       }
       return read_session(*next++);
     };
-    const auto check = [&](const InFlight& one) {
-      if (!one->fault) one->check(*file_.commitment(), reader_);
-      return one;
+    const auto check = [&](const InFlight& session) {
+      if (!session->fault) session->check(*file_.commitment(), reader_);
+      return session;
     };
-    const auto add = [&](const InFlight& one) {
+    const auto add = [&](const InFlight& session) {
       if (fault) return;
-      fault = one->fault;
+      fault = session->fault;
       has_fault = fault != nullptr;
-      if (!fault) add_session(*one);
+      if (!fault) add_session(*session);
     };
     const auto in_order = tbb::filter_mode::serial_in_order;
     tbb::parallel_pipeline(kParallelSessions, tbb::make_filter<void, InFlight>(in_order, read) &
@@ -213,30 +215,30 @@ class Inspection {
     if (fault) std::rethrow_exception(fault);
     for (const std::int64_t session : sessions_with_events(database_)) {
       if (session < 0) continue;
-      const bool known = session <= std::numeric_limits<int>::max() &&
-                         file_.sessions().count(static_cast<int>(session)) > 0;
-      if (!known)
+      const bool has_session = session <= std::numeric_limits<int>::max() &&
+                               file_.sessions().count(static_cast<int>(session)) > 0;
+      if (!has_session)
         throw EventFault(session, kNoEvent, "the file's chain has no such session [stray-session]");
     }
   }
 
   [[nodiscard]] std::shared_ptr<SessionInFlight> read_session(
-      const std::pair<const int, SessionOnFile>& known) const {
-    auto one = std::make_shared<SessionInFlight>();
-    one->session = known.first;
-    one->on_file = &known.second;
-    if (known.second.opened.station > 0 && !is_collected_) {
-      one->fault = std::make_exception_ptr(
-          EventFault(0, known.second.opened_at, "a session comes from a station that is not here"));
+      const std::pair<const int, SessionOnFile>& entry) const {
+    auto session = std::make_shared<SessionInFlight>();
+    session->session = entry.first;
+    session->on_file = &entry.second;
+    if (entry.second.opened.station > 0 && !is_collected_) {
+      session->fault = std::make_exception_ptr(
+          EventFault(0, entry.second.opened_at, "the chain of the session's station is missing"));
     } else {
-      one->events = read_events(database_, one->session, one->unreadable);
+      session->events = read_events(database_, session->session, session->read_fault);
     }
-    return one;
+    return session;
   }
 
-  void add_session(SessionInFlight& one) {
-    for (const auto& [trial, claim] : one.claims) {
-      claims_.emplace(TrialId(one.session, trial), claim);
+  void add_session(const SessionInFlight& session) {
+    for (const auto& [trial, claim] : session.claims) {
+      claims_.emplace(TrialId(session.session, trial), claim);
     }
   }
 
@@ -248,9 +250,9 @@ class Inspection {
         "SELECT session FROM participant_keys UNION SELECT session FROM safety_keys ORDER BY 1");
     while (query.step()) {
       const std::int64_t session = query.integer(0);
-      const bool known = session > 0 && session <= std::numeric_limits<int>::max() &&
-                         file_.sessions().contains(static_cast<int>(session));
-      if (!known)
+      const bool has_session = session > 0 && session <= std::numeric_limits<int>::max() &&
+                               file_.sessions().contains(static_cast<int>(session));
+      if (!has_session)
         throw EventFault(session, kNoEvent, "a participant's key has no session [stray-key]");
     }
     inspect_station_keys();
@@ -278,15 +280,15 @@ class Inspection {
   void inspect_traces() {
     Query query = database_.query("SELECT session, trial, box FROM traces ORDER BY session, trial");
     auto claim = claims_.begin();
-    using Wide = std::pair<std::int64_t, std::int64_t>;
-    const auto missing = [&] {
+    using RowId = std::pair<std::int64_t, std::int64_t>;
+    const auto refuse_missing = [&] {
       throw EventFault(claim->first.first, claim->second.sequence,
                        trace_of(claim->first) + " is missing [missing-trace]");
     };
     while (query.step()) {
-      const Wide id(query.integer(0), query.integer(1));
-      if (claim != claims_.end() && Wide(claim->first) < id) missing();
-      if (claim == claims_.end() || Wide(claim->first) != id) {
+      const RowId id(query.integer(0), query.integer(1));
+      if (claim != claims_.end() && RowId(claim->first) < id) refuse_missing();
+      if (claim == claims_.end() || RowId(claim->first) != id) {
         throw EventFault(
             id.first, kNoEvent,
             "trace of trial " + std::to_string(id.second) + " has no event [stray-trace]");
@@ -297,16 +299,15 @@ class Inspection {
       }
       ++claim;
     }
-    if (claim != claims_.end()) missing();
+    if (claim != claims_.end()) refuse_missing();
   }
 
   /// Runs last: a fault of stored data is reported before the missing trigger that allowed it.
   void inspect_schema() const {
-    const auto differs = schema_fault(database_);
-    if (!differs) return;
-    throw EventFault(
-        0, kNoEvent,
-        differs->what + (differs->remedy.empty() ? "" : "; remove it: " + differs->remedy));
+    const auto fault = schema_fault(database_);
+    if (!fault) return;
+    throw EventFault(0, kNoEvent,
+                     fault->what + (fault->remedy.empty() ? "" : "; remove it: " + fault->remedy));
   }
 
   const Database& database_;
@@ -328,7 +329,7 @@ std::optional<ChainFault> find_first_fault(const Database& database, TraceCheck 
                         found.session() <= std::numeric_limits<int>::max();
     return ChainFault{.session = is_int ? static_cast<int>(found.session()) : 0,
                       .sequence = std::max(found.sequence(), std::int64_t{0}),
-                      .what = found.bare()};
+                      .what = found.description()};
   }
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-std::string named(const StationChain& station, int own_session) {
+std::string session_label(const StationChain& station, int own_session) {
   return "session " + std::to_string(own_session) + " of " + station.name;
 }
 
@@ -26,7 +26,7 @@ class Feed {
   Feed(const StationChain& station, int number, bool simulated)
       : station_(&station), number_(number), simulated_(simulated) {
     for (const Event& event : station.events) file_.add(event);
-    skip();
+    skip_to_ended();
   }
 
   [[nodiscard]] const StationChain& station() const noexcept { return *station_; }
@@ -34,26 +34,26 @@ class Feed {
   [[nodiscard]] bool is_done() const noexcept { return next_ == station_->events.size(); }
   [[nodiscard]] const Event& head() const { return station_->events[next_]; }
   /// The session that the head is about.
-  [[nodiscard]] const SessionOnFile& session() const { return sessions().at(about_); }
+  [[nodiscard]] const SessionOnFile& session() const { return sessions().at(head_session_); }
   [[nodiscard]] const std::map<int, SessionOnFile>& sessions() const { return file_.sessions(); }
 
   /// The feed with the lowest rank comes first.
   [[nodiscard]] std::tuple<int, int, nanoseconds, int> rank() const {
-    const SessionOpenedBody& opened = session().opened;
-    return {simulated_ ? opened.visit : 0, simulated_ ? opened.enrolment : 0, head().at,
-            simulated_ ? 0 : opened.enrolment};
+    const SessionOpenedBody& opening = session().opened;
+    return {simulated_ ? opening.visit : 0, simulated_ ? opening.enrolment : 0, head().at,
+            simulated_ ? 0 : opening.enrolment};
   }
   void advance() {
     ++next_;
-    skip();
+    skip_to_ended();
   }
 
  private:
-  /// Goes to the next event about a session that has ended.
-  void skip() {
+  /// Moves to the next event about a session that has ended.
+  void skip_to_ended() {
     for (; !is_done(); ++next_) {
-      about_ = session_about(head());
-      if (about_ != 0 && session().closed) return;
+      head_session_ = session_about(head());
+      if (head_session_ != 0 && session().closed) return;
     }
   }
 
@@ -62,7 +62,7 @@ class Feed {
   bool simulated_;
   FileChain file_;
   std::size_t next_ = 0;
-  int about_ = 0;
+  int head_session_ = 0;
 };
 
 StudyCommitment commitment_of(const StationChain& station) {
@@ -77,14 +77,12 @@ StudyCommitment common_commitment(const StationChain& station) {
   return commitment;
 }
 
-/// Why two stations do not belong to one study, as a text.
+/// Why two stations do not belong to one study.
 std::string difference(const StudyCommitment& a, const StudyCommitment& b) {
-  if (a.study_id != b.study_id) return "they are of different studies [other-study]";
-  if (a.simulated != b.simulated)
-    return "one is of simulated participants, the other is not [simulated]";
-  if (a.pilot != b.pilot) return "one is of a pilot, the other is not [pilot]";
-  if (a.seal != b.seal)
-    return "their seals differ, as the study was changed between them [other-seal]";
+  if (a.study_id != b.study_id) return "they belong to different studies [other-study]";
+  if (a.simulated != b.simulated) return "only one has simulated participants [simulated]";
+  if (a.pilot != b.pilot) return "only one is a pilot [pilot]";
+  if (a.seal != b.seal) return "their seals differ, because the study was changed [other-seal]";
   if (a.pack != b.pack) return "they were recorded with different packs [other-pack]";
   if (a.investigator != b.investigator)
     return "they name different investigators [other-investigator]";
@@ -109,7 +107,7 @@ class Places {
     participants_.emplace(session.participant, session.visit);
     enrolments_.emplace(session.enrolment, session.visit);
   }
-  /// Of several sessions with the same place, removes one.
+  /// Removes one session with this place.
   void remove(const SessionOpenedBody& session) {
     participants_.extract({session.participant, session.visit});
     enrolments_.extract({session.enrolment, session.visit});
@@ -133,25 +131,25 @@ class Collection {
     int number = 0;
     for (const StationChain& station : stations) feeds_.emplace_back(station, ++number, simulated);
     for (const Feed& feed : feeds_) {
-      for (const auto& [own, session] : feed.sessions()) {
-        if (session.closed && session.replaced_at) former_.insert(session.opened);
+      for (const auto& [own_session, session] : feed.sessions()) {
+        if (session.closed && session.replaced_at) awaiting_replacement_.insert(session.opened);
       }
     }
   }
 
-  CollectedChain made() {
+  CollectedChain build() {
     const Event& first = stations_.front().events.front();
     StudyCommitment commitment = commitment_of(stations_.front());
     commitment.station.reset();
     append(EventKind::study_committed, first.at, to_json(commitment));
-    while (Feed* const next = next_feed()) take(*next);
-    refuse_taken_twice();
-    look_at_persons();
-    end_collection();
-    unblind();
+    while (Feed* const next = next_feed()) append_head(*next);
+    refuse_duplicate_places();
+    append_participant_looks();
+    append_study_closed();
+    append_unblinding();
     for (const Feed& feed : feeds_) {
-      for (const auto& [own, session] : feed.sessions()) {
-        if (!session.closed) chain_.left_out.push_back({feed.number(), own});
+      for (const auto& [own_session, session] : feed.sessions()) {
+        if (!session.closed) chain_.left_out.push_back({feed.number(), own_session});
       }
     }
     return std::move(chain_);
@@ -164,15 +162,17 @@ class Collection {
   }
 
   /// Whether a feed opens a session whose place is occupied at this point of the chain.
-  [[nodiscard]] bool is_taken(const Feed& feed) const {
-    return feed.head().kind == EventKind::session_opened && taken_.has(feed.session().opened);
+  [[nodiscard]] bool is_occupied(const Feed& feed) const {
+    return feed.head().kind == EventKind::session_opened &&
+           occupied_places_.has(feed.session().opened);
   }
 
-  /// Whether a feed opens a session that stays, in a place whose former holder's replacement is not
-  /// yet in the chain: stations' clocks may differ by more than the time until the replacement.
+  /// Whether a feed opens a session that is never replaced, in a place whose former holder has not
+  /// been replaced in the chain yet. This happens if stations' clocks differ by more than the time
+  /// until the replacement.
   [[nodiscard]] bool must_wait(const Feed& feed) const {
     return feed.head().kind == EventKind::session_opened && !feed.session().replaced_at &&
-           former_.has(feed.session().opened);
+           awaiting_replacement_.has(feed.session().opened);
   }
 
   /// The feed whose head comes next; null when all are done. A session waits for the replacement of
@@ -180,21 +180,21 @@ class Collection {
   /// do not clash if both places are free in the end; the earlier one is then first.
   Feed* next_feed() {
     Feed* best = nullptr;
-    Feed* later = nullptr;
-    Feed* waits = nullptr;
-    const auto prefer = [](Feed*& known, Feed& feed) {
-      if (known == nullptr || feed.rank() < known->rank()) known = &feed;
+    Feed* waiting = nullptr;
+    Feed* blocked = nullptr;
+    const auto prefer = [](Feed*& first, Feed& feed) {
+      if (first == nullptr || feed.rank() < first->rank()) first = &feed;
     };
     for (Feed& feed : feeds_) {
       if (feed.is_done()) continue;
-      if (is_taken(feed)) {
-        prefer(waits, feed);
+      if (is_occupied(feed)) {
+        prefer(blocked, feed);
       } else {
-        prefer(must_wait(feed) ? later : best, feed);
+        prefer(must_wait(feed) ? waiting : best, feed);
       }
     }
     if (best != nullptr) return best;
-    return later != nullptr ? later : waits;
+    return waiting != nullptr ? waiting : blocked;
   }
 
   [[nodiscard]] const Feed& feed_of(const SessionPlace& place) const {
@@ -206,53 +206,54 @@ class Collection {
 
   /// A participant id and an enrolment number belong to at most one session of a visit that was not
   /// replaced. Replaced sessions occupy no place, whenever they were replaced.
-  void refuse_taken_twice() const {
+  void refuse_duplicate_places() const {
     std::map<std::pair<std::string, int>, SessionPlace> participants;
     std::map<std::pair<int, int>, SessionPlace> enrolments;
     for (const SessionPlace& place : chain_.sessions) {
       if (session_at(place).replaced_at) continue;
-      const SessionOpenedBody& opened = session_at(place).opened;
+      const SessionOpenedBody& opening = session_at(place).opened;
       const auto [participant, is_new] =
-          participants.emplace(std::pair(opened.participant, opened.visit), place);
-      if (!is_new) refuse_taken(participant->second, place);
+          participants.emplace(std::pair(opening.participant, opening.visit), place);
+      if (!is_new) refuse_duplicate(participant->second, place);
       const auto [enrolment, is_free] =
-          enrolments.emplace(std::pair(opened.enrolment, opened.visit), place);
-      if (!is_free) refuse_taken(enrolment->second, place);
+          enrolments.emplace(std::pair(opening.enrolment, opening.visit), place);
+      if (!is_free) refuse_duplicate(enrolment->second, place);
     }
   }
 
-  [[noreturn]] void refuse_taken(const SessionPlace& first, const SessionPlace& second) const {
-    const SessionOpenedBody& taken = session_at(first).opened;
-    const SessionOpenedBody& opened = session_at(second).opened;
-    const bool participant = taken.participant == opened.participant;
+  [[noreturn]] void refuse_duplicate(const SessionPlace& first, const SessionPlace& second) const {
+    const SessionOpenedBody& earlier = session_at(first).opened;
+    const SessionOpenedBody& opening = session_at(second).opened;
+    const bool same_participant = earlier.participant == opening.participant;
     throw StoreError(one_line(
-        (participant ? "participant " + opened.participant
-                     : "enrolment " + std::to_string(opened.enrolment) + " (participants " +
-                           taken.participant + " and " + opened.participant + ")") +
-        " is taken twice, by " + named(feed_of(first).station(), first.own_session) + " and by " +
-        named(feed_of(second).station(), second.own_session) +
+        (same_participant ? "participant " + opening.participant
+                          : "enrolment " + std::to_string(opening.enrolment) + " (participants " +
+                                earlier.participant + " and " + opening.participant + ")") +
+        " is used twice, by " + session_label(feed_of(first).station(), first.own_session) +
+        " and by " + session_label(feed_of(second).station(), second.own_session) +
         "; exclude and replace one of them at its station" +
-        (taken.enrolment == opened.enrolment
+        (earlier.enrolment == opening.enrolment
              ? ", and do not run the successor, who would inherit the number"
              : "") +
         ", or leave that station's file out"));
   }
 
-  void take(Feed& feed) {
+  /// Appends the feed's head, with the session's number in the collected chain.
+  void append_head(Feed& feed) {
     const SessionOpenedBody& session = feed.session().opened;
     const SessionPlace place{.station = feed.number(), .own_session = session.session};
     const Event& event = feed.head();
     if (event.kind == EventKind::session_opened) {
       chain_.sessions.push_back(place);
       numbers_[place] = static_cast<int>(chain_.sessions.size());
-      taken_.insert(session);
+      occupied_places_.insert(session);
       append(event.kind, event.at, body_of(event, [&](const std::string& body) {
                return renumbered_opening(body, numbers_.at(place), place.station);
              }));
     } else {
       if (event.kind == EventKind::participant_replaced) {
-        taken_.remove(session);
-        former_.remove(session);
+        occupied_places_.remove(session);
+        awaiting_replacement_.remove(session);
       }
       std::string renumbered_body = body_of(
           event, [&](const std::string& body) { return renumbered(body, numbers_.at(place)); });
@@ -268,7 +269,7 @@ class Collection {
   }
 
   /// The last event of a kind on a station's chain, other than looks at one participant.
-  static const Event* last_of(const StationChain& station, EventKind kind) {
+  static const Event* last_event_of(const StationChain& station, EventKind kind) {
     const auto found =
         std::find_if(station.events.rbegin(), station.events.rend(),
                      [&](const Event& event) { return event.kind == kind && !is_personal(event); });
@@ -276,7 +277,7 @@ class Collection {
   }
 
   /// Every look at one participant, with the sessions that it shows, by time and station.
-  void look_at_persons() {
+  void append_participant_looks() {
     std::multimap<nanoseconds, UnblindingBody> looks;
     for (const Feed& feed : feeds_) {
       const std::span<const Event> events = feed.station().events;
@@ -286,9 +287,9 @@ class Collection {
         body.sessions.emplace();
         for (const Event& before : events.first(i)) {
           if (before.kind != EventKind::session_opened) continue;
-          const SessionOpenedBody opened = body_of<SessionOpenedBody>(before);
-          const auto number = numbers_.find({feed.number(), opened.session});
-          if (opened.participant != body.participant || number == numbers_.end()) continue;
+          const SessionOpenedBody opening = body_of<SessionOpenedBody>(before);
+          const auto number = numbers_.find({feed.number(), opening.session});
+          if (opening.participant != body.participant || number == numbers_.end()) continue;
           body.sessions->push_back(number->second);
         }
         std::ranges::sort(*body.sessions);
@@ -299,10 +300,10 @@ class Collection {
   }
 
   /// The study is closed if all stations closed it.
-  void end_collection() {
+  void append_study_closed() {
     nanoseconds at = nanoseconds::min();
     for (const StationChain& station : stations_) {
-      const Event* const closed = last_of(station, EventKind::study_closed);
+      const Event* const closed = last_event_of(station, EventKind::study_closed);
       if (closed == nullptr) return;
       at = std::max(at, closed->at);
     }
@@ -313,15 +314,15 @@ class Collection {
   /// The study is unblinded if all stations with sessions unblinded it. If one of them did so only
   /// for an interim look, or a station still collects data, it becomes an interim look at the
   /// sessions of the stations' looks.
-  void unblind() {
+  void append_unblinding() {
     nanoseconds at = nanoseconds::min();
-    const auto ended = [](const auto& entry) { return entry.second.closed.has_value(); };
+    const auto has_ended = [](const auto& entry) { return entry.second.closed.has_value(); };
     bool interim = !closed_;
     std::vector<std::string> reasons;
-    std::vector<int> shown;
+    std::vector<int> shown_sessions;
     for (const Feed& feed : feeds_) {
-      if (std::ranges::none_of(feed.sessions(), ended)) continue;
-      const Event* const look = last_of(feed.station(), EventKind::study_unblinded);
+      if (std::ranges::none_of(feed.sessions(), has_ended)) continue;
+      const Event* const look = last_event_of(feed.station(), EventKind::study_unblinded);
       if (look == nullptr) return;
       const StudyState state = state_of_chain(feed.station().events);
       if (!state.unblinded) return;
@@ -330,17 +331,17 @@ class Collection {
       if (std::ranges::find(reasons, state.unblinding_reason) == reasons.end()) {
         reasons.push_back(state.unblinding_reason);
       }
-      for (const auto& [own, session] : feed.sessions()) {
-        if (session.closed && state.reports(own))
-          shown.push_back(numbers_.at({feed.number(), own}));
+      for (const auto& [own_session, session] : feed.sessions()) {
+        if (session.closed && state.reports(own_session))
+          shown_sessions.push_back(numbers_.at({feed.number(), own_session}));
       }
     }
     if (reasons.empty()) return;
     std::string reason = reasons.front();
     for (std::size_t i = 1; i < reasons.size(); ++i) reason += "; " + reasons[i];
     UnblindingBody body{.reason = reason, .interim = interim};
-    std::ranges::sort(shown);
-    if (interim) body.sessions = std::move(shown);
+    std::ranges::sort(shown_sessions);
+    if (interim) body.sessions = std::move(shown_sessions);
     append(EventKind::study_unblinded, at, to_json(body));
   }
 
@@ -348,12 +349,12 @@ class Collection {
   std::vector<Feed> feeds_;
   CollectedChain chain_;
   std::map<SessionPlace, int> numbers_;
-  Places taken_;   ///< of sessions that have not been replaced so far
-  Places former_;  ///< of sessions that will be replaced, until the event of their replacement
+  Places occupied_places_;       ///< of sessions not replaced so far
+  Places awaiting_replacement_;  ///< of sessions that are replaced later in the chain
   bool closed_ = false;
 };
 
-/// The event that opens a file's first session; null: no session was opened.
+/// The event that opens a file's first session; null if there is none.
 const Event* first_opening(std::span<const Event> chain) {
   const auto found = std::ranges::find(chain, EventKind::session_opened, &Event::kind);
   return found == chain.end() ? nullptr : &*found;
@@ -378,7 +379,7 @@ bool comes_before(const StationChain& a, const StationChain& b) {
 
 CollectedChain collected_chain(std::span<const StationChain> stations) {
   require_one_study(stations);
-  return Collection(stations).made();
+  return Collection(stations).build();
 }
 
 }  // namespace touchtrial::record

@@ -13,29 +13,29 @@
 
 namespace touchtrial::record {
 
-/// A station's file chain as in its own file, and the station's name for messages.
+/// A station's file chain as stored at the station.
 struct StationChain {
-  std::string name;
+  std::string name;  ///< of the station, for messages
   std::vector<Event> events;
 };
 
-/// Where a session of a collected study comes from.
+/// The origin of a collected study's session.
 struct SessionPlace {
-  int station = 0;  ///< from 1
-  int own_session = 0;
+  int station = 0;      ///< from 1
+  int own_session = 0;  ///< its number at that station
 
   friend auto operator<=>(const SessionPlace&, const SessionPlace&) = default;
 };
 
 /// The chain collected from stations' chains.
 struct CollectedChain {
-  std::vector<Event> events;           ///< of session 0, hashed
-  std::vector<SessionPlace> sessions;  ///< by number, from 1: sessions that have ended
+  std::vector<Event> events;           ///< the file's chain (session 0), with hashes
+  std::vector<SessionPlace> sessions;  ///< sessions that have ended, by their new numbers, from 1
   std::vector<SessionPlace> left_out;  ///< sessions that have not ended
 };
 
-/// A station's identity: the hash of the event that opened its first session. Nothing if no session
-/// was ever opened there.
+/// A station's identity: the hash of the event that opened its first session; nothing if there is
+/// none.
 [[nodiscard]] std::optional<Digest> station_identity(std::span<const Event> chain);
 
 /// The order of stations: by the time at which their first sessions were opened (by those sessions'
@@ -51,7 +51,7 @@ struct CollectedChain {
 ///   event is possible, the opening of a session waits until the former holder of its participant
 ///   id or enrolment number has been replaced. Sessions are numbered in the order in which they are
 ///   opened here.
-/// - Then come the stations' looks at single participants, with the sessions that they show.
+/// - Then come the stations' unblindings of single participants, with the sessions that they show.
 /// - Last come the closing of the study, if it is closed at all stations, and its unblinding, if it
 ///   is unblinded at all stations with sessions.
 /// \param stations  in the order of comes_before, each chain valid by itself (checked_file_chain)

@@ -16,10 +16,10 @@
 
 namespace touchtrial::record {
 
-/// Not to be shared between threads. An unfinished draft leaves no file behind.
+/// Not thread-safe. An unfinished draft leaves no file behind.
 class CollectedDraft {
  public:
-  /// A file beside `target`, renamed to it when finished.
+  /// Creates a file beside `target`, which `finish` renames to it.
   /// \throws StoreError if the target exists or no file can be created there
   [[nodiscard]] static CollectedDraft in_file(const std::filesystem::path& target);
 
@@ -34,20 +34,20 @@ class CollectedDraft {
 
   /// Must be called for each session, in the order of their numbers.
   /// \param session  from 1
-  /// \param events  as the station has them: with own numbers, not renumbered
-  /// \throws EventFault, with the session's own number, at any fault
-  /// \throws StoreError if it cannot be written, or some sessions are on a screen and others with a
-  ///   haptic device
+  /// \param events  with the station's session number, not renumbered
+  /// \throws EventFault, with the station's session number, at any fault
+  /// \throws StoreError if it cannot be written, or it mixes sessions on a screen with sessions
+  ///   with a haptic device
   void add_session(int session, std::span<const Event> events, const WrappedKeys& keys);
   /// Adds a trace of the last added session, in any order.
-  /// \throws the same
+  /// \throws as add_session
   void add_trace(int trial, const Bytes& box);
-  /// After a session's traces: checks that none is missing.
-  /// \throws the same
+  /// Checks, after a session's traces, that none is missing.
+  /// \throws as add_session
   void end_traces() const;
 
-  /// After all sessions: renames the file to its target.
-  /// \throws StoreError if it cannot be written, or another file has that name by now
+  /// Renames the file to its target. Must be called after all sessions.
+  /// \throws StoreError if it cannot be written, or another file has taken its name
   void finish() &&;
 
  private:

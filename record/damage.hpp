@@ -10,8 +10,8 @@
 
 namespace touchtrial::record {
 
-/// A Touchtrial database that is truncated, lacks tables, has pages that cannot be read, or holds
-/// evidence that was altered. A mistyped name is not a DamagedStore.
+/// A Touchtrial database that is truncated, lacks tables, has unreadable pages, or contains altered
+/// evidence. A mistyped name is not a DamagedStore.
 class DamagedStore : public StoreError {
  public:
   using StoreError::StoreError;
@@ -23,11 +23,11 @@ class LockedStore : public StoreError {
   using StoreError::StoreError;
 };
 
-/// In place of a sequence number: the fault is not in an event.
+/// The sequence number of a fault that is not in an event.
 inline constexpr std::int64_t kNoEvent = -1;
 
 /// \param session  as Event::session
-[[nodiscard]] inline std::string chain_named(std::int64_t session) {
+[[nodiscard]] inline std::string chain_name(std::int64_t session) {
   if (session == 0) return "the file's chain";
   if (session < 0) return "the chain of station " + std::to_string(-session);
   return "session " + std::to_string(session);
@@ -38,7 +38,7 @@ inline constexpr std::int64_t kNoEvent = -1;
 class EventFault : public StoreError {
  public:
   EventFault(std::int64_t session, std::int64_t sequence, const std::string& what)
-      : StoreError(chain_named(session) +
+      : StoreError(chain_name(session) +
                    (sequence < 0 ? "" : ", event " + std::to_string(sequence)) + ": " +
                    one_line(what)),
         session_(session),
@@ -50,7 +50,7 @@ class EventFault : public StoreError {
   [[nodiscard]] std::int64_t session() const noexcept { return session_; }
   [[nodiscard]] std::int64_t sequence() const noexcept { return sequence_; }
   /// The fault, without the place.
-  [[nodiscard]] const std::string& bare() const noexcept { return what_; }
+  [[nodiscard]] const std::string& description() const noexcept { return what_; }
 
  private:
   std::int64_t session_;
@@ -69,7 +69,7 @@ template <typename Parse>
   }
 }
 
-/// A hash as a row of events holds it.
+/// A hash from a row of events.
 /// \throws EventFault if it is not 32 bytes long
 [[nodiscard]] inline Digest stored_hash(ByteView bytes, std::int64_t session,
                                         std::int64_t sequence) {

@@ -18,7 +18,7 @@ namespace {
 constexpr int kBusyTimeoutMs = 2000;
 /// A connection is used by one thread at a time.
 constexpr int kNoMutex = SQLITE_OPEN_NOMUTEX;
-/// Marks our databases among SQLite files: "TTRL" in SQLite's application_id.
+/// Distinguishes Touchtrial's databases from other SQLite files: "TTRL" in SQLite's application_id.
 constexpr std::int32_t kApplicationId = 0x5454524c;
 
 // The first hundred bytes of an SQLite file, read without SQLite.
@@ -26,12 +26,12 @@ constexpr std::int32_t kApplicationId = 0x5454524c;
 constexpr char kSqliteMagic[] = "SQLite format 3";  // its final zero is part of it
 using Header = std::array<unsigned char, 100>;
 
-[[noreturn]] void refuse_file(const std::filesystem::path& path, const std::string& why) {
-  throw StoreError(one_line(path.string()) + ": " + why);
+[[noreturn]] void refuse_file(const std::filesystem::path& path, const std::string& reason) {
+  throw StoreError(one_line(path.string()) + ": " + reason);
 }
 
-[[noreturn]] void refuse_damaged(const std::filesystem::path& path, const std::string& why) {
-  throw DamagedStore(one_line(path.string()) + ": " + why + "; restore it from a backup");
+[[noreturn]] void refuse_damaged(const std::filesystem::path& path, const std::string& reason) {
+  throw DamagedStore(one_line(path.string()) + ": " + reason + "; restore it from a backup");
 }
 
 Header read_header(const std::filesystem::path& path) {
@@ -39,8 +39,8 @@ Header read_header(const std::filesystem::path& path) {
   const auto status = std::filesystem::status(path, error);
   if (status.type() == std::filesystem::file_type::not_found) {
     refuse_file(path,
-                "no such database; check the name; `touchtrial run` and `touchtrial simulate` make "
-                "one [no-database]");
+                "no such database; check the name; `touchtrial run` and `touchtrial simulate` "
+                "create one [no-database]");
   }
   if (std::filesystem::is_directory(status))
     refuse_file(path, "is a folder; name a database in it");
@@ -48,8 +48,8 @@ Header read_header(const std::filesystem::path& path) {
   if (!file) refuse_file(path, "cannot be read; check its permissions");
   Header header{};
   file.read(reinterpret_cast<char*>(header.data()), header.size());
-  const bool whole = file.gcount() == static_cast<std::streamsize>(header.size());
-  if (!whole || std::memcmp(header.data(), kSqliteMagic, sizeof kSqliteMagic) != 0) {
+  const bool is_complete = file.gcount() == static_cast<std::streamsize>(header.size());
+  if (!is_complete || std::memcmp(header.data(), kSqliteMagic, sizeof kSqliteMagic) != 0) {
     refuse_file(path, "is not a Touchtrial database; check the name [not-a-database]");
   }
   return header;
@@ -80,7 +80,7 @@ void check_header(const std::filesystem::path& path) {
   const Header header = read_header(path);
   if (big_endian_32(header, 68) != static_cast<std::uint32_t>(kApplicationId)) {
     refuse_file(path,
-                "is an SQLite database, but none of Touchtrial; check the name [not-a-database]");
+                "is an SQLite database, but not Touchtrial's; check the name [not-a-database]");
   }
   const std::uint32_t version = big_endian_32(header, 60);
   if (version == 0) refuse_damaged(path, "has no version, so it is damaged");
@@ -96,20 +96,20 @@ void check_header(const std::filesystem::path& path) {
   }
 }
 
-/// Absolute, because names such as ":memory:" are special in SQLite.
+/// Makes a path absolute, because names such as ":memory:" are special in SQLite.
 std::string absolute_name(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::path absolute = std::filesystem::absolute(path, error);
   return (error ? path : absolute.lexically_normal()).string();
 }
 
-bool may_write(const std::filesystem::path& path) {
+bool is_writable(const std::filesystem::path& path) {
   const std::filesystem::path file = absolute_name(path);
   return ::access(file.c_str(), W_OK) == 0 &&
          ::access(file.parent_path().c_str(), W_OK | X_OK) == 0;
 }
 
-/// For a file without writers: SQLite then needs neither locks nor files beside it.
+/// The URI of a file without writers, for which SQLite needs neither locks nor files beside it.
 std::string immutable_uri(const std::filesystem::path& path) {
   std::string uri = "file:";
   for (const char c : absolute_name(path)) {
@@ -125,8 +125,8 @@ std::string immutable_uri(const std::filesystem::path& path) {
 /// To read a database in WAL mode, SQLite needs a log and its index beside it. In a writable folder
 /// it creates and removes them, and we see what other programs add. In a read-only folder, a file
 /// without a log is complete and can be read as it is.
-SQLite::Database connected(const std::filesystem::path& path, Database::Mode mode) {
-  if (mode == Database::Mode::read_write || may_write(path)) {
+SQLite::Database open_connection(const std::filesystem::path& path, Database::Mode mode) {
+  if (mode == Database::Mode::read_write || is_writable(path)) {
     return {absolute_name(path), SQLite::OPEN_READWRITE | kNoMutex, kBusyTimeoutMs};
   }
   if (!has_log(path)) {
@@ -136,16 +136,17 @@ SQLite::Database connected(const std::filesystem::path& path, Database::Mode mod
   return {absolute_name(path), SQLite::OPEN_READONLY | kNoMutex, kBusyTimeoutMs};
 }
 
-/// SQLite does not refuse an unsupported setting: it reports the one in force.
-void require_setting(const Database& database, const std::string& name, const std::string& wanted,
+/// Requires that a setting is in force. SQLite does not refuse an unsupported setting, but reports
+/// the one in force.
+void require_setting(const Database& database, const std::string& name, const std::string& expected,
                      const std::string& remedy) {
-  const std::string had = database.connection().execAndGet("PRAGMA " + name).getString();
-  if (had == wanted) return;
-  throw StoreError(database.refusal("cannot be written safely (" + name + " gives " + had +
-                                    ", not " + wanted + "); " + remedy));
+  const std::string actual = database.connection().execAndGet("PRAGMA " + name).getString();
+  if (actual == expected) return;
+  throw StoreError(database.refusal("cannot be written safely (" + name + " gives " + actual +
+                                    ", not " + expected + "); " + remedy));
 }
 
-/// Acknowledged events must be on the disk: see docs/evidence.md.
+/// Makes commits durable, because acknowledged events must be on the disk (docs/evidence.md).
 void set_up_for_writing(const Database& database) {
   // A whole session fits into the cache (KiB), so that no page is written before its commit.
   database.connection().exec(
@@ -156,22 +157,22 @@ void set_up_for_writing(const Database& database) {
   require_setting(database, "secure_delete", "1", remedy);
 }
 
-void set_up_for_all(const Database& database) {
+void set_up_common(const Database& database) {
   database.connection().exec(
       "PRAGMA foreign_keys = ON; PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON;");
 }
 
 void set_up(const Database& database, Database::Mode mode) {
-  set_up_for_all(database);
+  set_up_common(database);
   if (mode == Database::Mode::read_only) {
-    // A report reads nearly every page once: more pages would only fill new memory.
+    // A report reads nearly every page only once, so a larger cache would only use more memory.
     database.connection().exec("PRAGMA query_only = ON; PRAGMA cache_size = 64;");
   } else {
     set_up_for_writing(database);
   }
 }
 
-/// What failed and how to remedy it.
+/// Describes what failed, and the remedy.
 /// \param code  SQLite's primary result code
 std::string explanation(int code, const std::string& message) {
   switch (code) {
@@ -187,10 +188,11 @@ std::string explanation(int code, const std::string& message) {
     case SQLITE_FULL:
       return "cannot grow; free space on its disk";
     case SQLITE_CANTOPEN:
-      return "cannot be opened; check that its folder exists and may be written, and no -wal file "
-             "was left beside it";
+      return "cannot be opened; check that its folder exists and is writable, and that no -wal "
+             "file "
+             "is left beside it";
     case SQLITE_NOMEM:
-      return "there is not enough memory to read it; close other programs";
+      return "needs more memory than there is; close other programs";
     case SQLITE_IOERR:
       return "reading or writing failed (" + message + "); check the disk";
     default:
@@ -207,35 +209,36 @@ std::string explanation(int code, const std::string& message) {
   throw StoreError(line);
 }
 
-/// Exclusive: of two programs that create it at once, one is refused.
+/// Creates the file exclusively: if two programs create it at once, one of them is refused.
 void make_empty_file(const std::filesystem::path& path) {
   std::FILE* file = std::fopen(path.c_str(), "wbx");
   if (file == nullptr) {
     const bool exists = errno == EEXIST;
     throw StoreError(one_line(path.string()) +
                      (exists
-                          ? ": exists already; choose another name or continue with it"
-                          : ": cannot be made; check that its folder exists and may be written"));
+                          ? ": already exists; choose another name or continue with it"
+                          : ": cannot be created; check that its folder exists and is writable"));
   }
   std::fclose(file);
 }
 
-/// The log of a file with two names is beside only one of them: opened by the other name, the
-/// database would lack acknowledged events.
+/// Refuses a file with several names, because the log is beside only one of them. Opened by another
+/// name, the database would lack acknowledged events.
 void refuse_second_name(const std::filesystem::path& path) {
   std::error_code error;
   const auto names = std::filesystem::hard_link_count(path, error);
   if (error || names == 1) return;
   refuse_file(path, "has " + std::to_string(names) +
-                        " names (hard links), and nothing is recorded in such a file; copy it to a "
-                        "new file, and move that to this name");
+                        " names (hard links), and cannot be used for recording; copy it to a new "
+                        "file, and move that to this name");
 }
 
-/// The message does not repeat the address, which may hold a password.
+/// Refuses an address in place of a file. The message does not repeat the address, which may
+/// contain a password.
 void refuse_address(const std::filesystem::path& path) {
   if (path.string().find("://") == std::string::npos) return;
   throw StoreError(
-      "an address is not a file: make one with `touchtrial merge ADDRESS -o "
+      "an address is not a file: create one with `touchtrial merge ADDRESS -o "
       "all.db`");
 }
 
@@ -253,7 +256,7 @@ Query& Query::bind(ByteView blob) {
 
 ByteView Query::blob_view(int column) const {
   const SQLite::Column value = statement_->getColumn(column);
-  // The pointer first: asking for the size may convert a value of another type.
+  // The pointer is read first, because reading the size may convert a value of another type.
   const auto* data = static_cast<const std::uint8_t*>(value.getBlob());
   const auto size = static_cast<std::size_t>(value.getBytes());
   return data == nullptr ? ByteView() : ByteView(data, size);
@@ -263,7 +266,7 @@ Database Database::create(const std::filesystem::path& path) {
   refuse_address(path);
   make_empty_file(path);
   try {
-    Database database(path, connected(path, Mode::read_write));
+    Database database(path, open_connection(path, Mode::read_write));
     // Large pages suit large traces. An empty file need not be durable yet: the first transaction's
     // sync covers it.
     database.connection_.exec("PRAGMA synchronous = OFF; PRAGMA page_size = 8192;");
@@ -281,7 +284,7 @@ Database Database::temporary(const std::string& name) {
   try {
     Database database(name, SQLite::Database("", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE));
     database.connection_.exec("PRAGMA page_size = 8192;");
-    set_up_for_all(database);
+    set_up_common(database);
     database.write_unsynced();
     return database;
   } catch (const SQLite::Exception& error) {
@@ -294,14 +297,14 @@ Database Database::open(const std::filesystem::path& path, Mode mode) {
   check_header(path);
   if (mode == Mode::read_write) refuse_second_name(path);
   try {
-    Database database(path, connected(path, mode));
+    Database database(path, open_connection(path, mode));
     if (mode == Mode::read_write &&
         sqlite3_db_readonly(database.connection_.getHandle(), "main") == 1) {
       throw StoreError(
           database.refusal("cannot be written; check its permissions and those of its folder"));
     }
     set_up(database, mode);
-    // SQLite opens files lazily: faults of the file show when its schema is read.
+    // SQLite opens files lazily: reading the schema reveals faults of the file.
     database.connection_.execAndGet("SELECT count(*) FROM sqlite_schema");
     return database;
   } catch (const SQLite::Exception& error) {

@@ -1,5 +1,5 @@
-/// \file One SQLite connection: how it is opened, its prepared statements, transactions and errors.
-/// Private to record: the only header here that shows SQLiteCpp.
+/// \file One SQLite connection: opening, prepared statements, transactions and errors. Private to
+/// record; the only header that includes SQLiteCpp.
 #pragma once
 
 #include "core/bytes.hpp"
@@ -29,8 +29,8 @@ namespace touchtrial::record {
 class Query {
  public:
   explicit Query(SQLite::Statement& statement) : statement_(&statement) {}
-  explicit Query(std::unique_ptr<SQLite::Statement> owned)
-      : owned_(std::move(owned)), statement_(owned_.get()) {}
+  explicit Query(std::unique_ptr<SQLite::Statement> statement)
+      : owned_(std::move(statement)), statement_(owned_.get()) {}
   ~Query() { statement_->tryReset(); }
   Query(const Query&) = delete;
   Query& operator=(const Query&) = delete;
@@ -45,7 +45,7 @@ class Query {
     return *this;
   }
   Query& bind(ByteView blob);
-  /// Empty: NULL.
+  /// Binds NULL if the value is empty.
   template <typename Value>
   Query& bind(const std::optional<Value>& value) {
     if (value) return bind(*value);
@@ -55,7 +55,7 @@ class Query {
 
   /// \return whether there is another row
   [[nodiscard]] bool step() { return statement_->executeStep(); }
-  /// For statements without rows.
+  /// Runs a statement without rows.
   void run() { statement_->exec(); }
 
   [[nodiscard]] std::int64_t integer(int column) const {
@@ -68,7 +68,7 @@ class Query {
     const ByteView bytes = blob_view(column);
     return {bytes.begin(), bytes.end()};
   }
-  /// Without a copy: until the next step, or until the column is asked for again.
+  /// A view of the blob, valid until the next step or the next access to the column.
   [[nodiscard]] ByteView blob_view(int column) const;
   [[nodiscard]] bool is_null(int column) const { return statement_->isColumnNull(column); }
 
@@ -81,22 +81,22 @@ class Query {
 /// The version of databases, raised at every change of the tables or their content.
 inline constexpr int kSchemaVersion = 8;
 
-/// Not to be shared between threads.
+/// A connection to one database. Not thread-safe.
 class Database {
  public:
   enum class Mode { read_only, read_write };
 
-  /// A new, empty database with our application id, without tables.
+  /// Creates an empty database with Touchtrial's application id and no tables.
   /// \throws StoreError if the file exists
   [[nodiscard]] static Database create(const std::filesystem::path& path);
 
-  /// An empty private database in memory and in an unnamed file, which disappears with the
-  /// connection or the program.
+  /// Creates an empty private database in memory and an unnamed file, which is deleted with the
+  /// connection.
   /// \param name  for messages
   [[nodiscard]] static Database temporary(const std::string& name);
 
-  /// An existing database. If it is opened for reading and no log lies beside it, no files are left
-  /// behind and its folder need not be writable.
+  /// Opens an existing database. Reading a database without a log beside it leaves no files behind,
+  /// and its folder need not be writable.
   /// \throws DamagedStore if it is truncated, has no version or cannot be read by SQLite
   /// \throws StoreError if it is missing, not a Touchtrial database, or of another version than
   ///   kSchemaVersion; it is then untouched
@@ -108,15 +108,15 @@ class Database {
   [[nodiscard]] SQLite::Database& connection() const { return connection_; }
 
   /// A prepared statement, compiled once.
-  /// \param sql  lives as long as the program
+  /// \param sql  a string with static lifetime
   [[nodiscard]] Query query(const char* sql) const;
   /// A separate statement, for loops whose body may run other queries on this database.
   [[nodiscard]] Query separate_query(const char* sql) const;
 
-  /// For filling a draft, which is discarded if anything fails: without a log, and without waiting
-  /// for the disk.
+  /// From now on, writes without a log and without syncing. For drafts, which are discarded if
+  /// anything fails.
   void write_unsynced() const;
-  /// After write_unsynced: syncs everything, and writes durably from now on.
+  /// Ends write_unsynced: syncs everything, and writes durably from now on.
   void write_safely() const;
 
   /// Moves the content of the write-ahead log into the file and empties the log.

@@ -9,12 +9,12 @@
 namespace touchtrial::record {
 namespace {
 
-constexpr std::string_view kSignedAs = "touchtrial event 1";
+constexpr std::string_view kStatementPrefix = "touchtrial event 1";
 
 /// The signed text of an event; its hash covers the chain up to it.
 auto statement_of(const Event& event) {
-  std::array<std::uint8_t, kSignedAs.size() + Digest{}.size()> statement{};
-  std::ranges::copy(event.hash, std::ranges::copy(kSignedAs, statement.begin()).out);
+  std::array<std::uint8_t, kStatementPrefix.size() + Digest{}.size()> statement{};
+  std::ranges::copy(event.hash, std::ranges::copy(kStatementPrefix, statement.begin()).out);
   return statement;
 }
 
@@ -67,7 +67,7 @@ ChainLink ChainLink::after(const Event& last) {
   return link;
 }
 
-std::optional<std::string> ChainLink::broken_by(const Event& next) const {
+std::optional<std::string> ChainLink::link_fault(const Event& next) const {
   if (next.session != session_ || next.own_session() != own_session_) {
     return "the event belongs to another chain [other-chain]";
   }
@@ -79,7 +79,7 @@ std::optional<std::string> ChainLink::broken_by(const Event& next) const {
   if (next.sequence < length_) return "the sequence number repeats [repeated-sequence]";
   if (next.previous != head_) {
     return length_ == 0 ? "previous is not zero in the first event [broken-link]"
-                        : "previous does not match the hash of the event before [broken-link]";
+                        : "previous does not match the hash of the previous event [broken-link]";
   }
   if (next.hash != event_hash(next))
     return "the hash of the event does not match its content [altered-event]";
@@ -93,8 +93,8 @@ std::optional<std::string> ChainLink::broken_by(const Event& next) const {
 }
 
 void ChainLink::extend(const Event& next) {
-  if (const auto broken = broken_by(next)) {
-    throw EventFault(session_, std::min(next.sequence, length_), *broken);
+  if (const auto fault = link_fault(next)) {
+    throw EventFault(session_, std::min(next.sequence, length_), *fault);
   }
   ++length_;
   head_ = next.hash;

@@ -1,4 +1,4 @@
-/// \file The append-only events of a study, each of which commits to the one before. Source:
+/// \file The append-only events of a study, each of which commits to the previous one. Source:
 /// docs/data-dictionary.md, "Events".
 #pragma once
 
@@ -60,37 +60,38 @@ enum class EventKind {
 /// Whether events of this kind belong to the file's chain; all others belong to a session's.
 [[nodiscard]] bool belongs_to_file_chain(EventKind kind);
 
-/// One event. `body` is in clear and reveals nothing about stimuli and answers. `sealed` is
-/// ciphertext: of a session's event its time and the rest of its body (sealing.hpp), of an event of
-/// the file's chain the texts about a person (person_texts.hpp). An opened event is as it was
-/// recorded.
+/// One event. `body` is unencrypted and reveals nothing about stimuli and answers. `sealed` is
+/// ciphertext: in a session's event its time and the private part of its body (sealing.hpp), in an
+/// event of the file's chain the texts about a person (person_texts.hpp). An opened event is
+/// decrypted.
 struct Event {
   int session = 0;            ///< 0: the file's chain; from 1: a session;
                               ///< -1, -2, ...: the file chain of a collected station
   std::int64_t sequence = 0;  ///< place in its chain, from 0
   EventKind kind{};
-  /// File's chain: UTC since 1970. Session: 0 as stored; opened, the time since its opening.
+  /// File's chain: UTC since 1970. Session: 0 as stored; time since the session opened if opened.
   std::chrono::nanoseconds at{};
   std::string body;   ///< compact JSON object with sorted keys
-  Bytes sealed;       ///< empty in an opened event, and in one that is not about a person
-  Digest previous{};  ///< hash of the event before; zeros for the first
-  Digest hash{};      ///< event_hash of this one
+  Bytes sealed;       ///< empty if the event is opened, or not about a person
+  Digest previous{};  ///< hash of the previous event; zeros for the first
+  Digest hash{};      ///< event_hash of this event
   /// File's chain: the station's or the investigator's Ed25519 signature, see signed_event. Empty
-  /// in sessions, and where a collected study's chain follows from its stations' chains.
+  /// in sessions, and in the part of a collected study's chain that follows from its stations'
+  /// chains.
   Bytes signature{};
-  /// In a collected database: the session's number in the station's file. Empty if it is the same.
+  /// In a collected database, the session's number in the station's file; empty if it is the same.
   std::optional<int> renumbered_from{};
 
-  /// The session's number in the file that it was recorded in. Hash and sealed part are bound to
-  /// it.
+  /// The session's number in the file that it was recorded in, to which hash and sealed part are
+  /// bound.
   [[nodiscard]] int own_session() const noexcept { return renumbered_from.value_or(session); }
-  /// The event's time if it is readable: that of a stored session event is sealed.
+  /// The event's time, unless it is sealed.
   [[nodiscard]] std::optional<std::chrono::nanoseconds> time() const {
     return session <= 0 || sealed.empty() ? std::optional(at) : std::nullopt;
   }
 };
 
-/// BLAKE2b over own_session() and all other members but the signature, ciphertext included.
+/// BLAKE2b over own_session() and all other members except the signature.
 [[nodiscard]] Digest event_hash(const Event& event);
 
 /// The event that follows `last` on a file's chain, with its hash.
@@ -105,12 +106,12 @@ struct Event {
 /// The end of a chain.
 struct ChainHead {
   std::int64_t length = 0;  ///< number of events
-  Digest hash{};            ///< of the last; zeros if there is none
+  Digest hash{};            ///< of the last event; zeros if there is none
 
   friend bool operator==(const ChainHead&, const ChainHead&) = default;
 };
 
-/// The growing end of one chain. It checks the links of events; `fold` checks their meaning.
+/// The growing end of one chain. It checks only links; `fold` checks what events mean.
 class ChainLink {
  public:
   /// \param session  as Event::session
@@ -122,8 +123,8 @@ class ChainLink {
   /// \param last  its last event
   [[nodiscard]] static ChainLink after(const Event& last);
 
-  /// \return why `next` cannot follow, or nothing if it can
-  [[nodiscard]] std::optional<std::string> broken_by(const Event& next) const;
+  /// \return why `next` cannot follow; nothing if it can
+  [[nodiscard]] std::optional<std::string> link_fault(const Event& next) const;
 
   /// Adds the next event.
   /// \throws EventFault if it cannot follow; the chain is then as it was

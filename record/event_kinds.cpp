@@ -12,20 +12,20 @@ namespace {
 
 using Kind = EventKind;
 
-using More = EventKindRow::More;
+using Details = EventKindRow::Details;
 
-constexpr More kSafetyRecord{.in_safety_record = true};
+constexpr Details kSafetyRecord{.in_safety_record = true};
 
-constexpr More about_text(std::string_view text, std::string_view secret_description = {}) {
+constexpr Details text_details(std::string_view text, std::string_view secret_description = {}) {
   return {.text = text, .secret_description = secret_description};
 }
 
-constexpr More secret_text(std::string_view description) {
+constexpr Details secret_text_details(std::string_view description) {
   return {.secret_description = description};
 }
 
 template <typename Body>
-constexpr More secret_body(bool in_safety_record = false) {
+constexpr Details secret_body_details(bool in_safety_record = false) {
   return {.secret = describe_body<Body>, .in_safety_record = in_safety_record};
 }
 
@@ -41,10 +41,10 @@ constexpr auto kKinds = std::to_array<EventKindRow>({
     {Kind::participant_withdrawn, "participant-withdrawn", "the participant withdrew",
      describe_body<WithdrawalBody>},
     {Kind::study_closed, "study-closed", "collection ended", describe_body<EmptyBody>},
-    {Kind::study_unblinded, "study-unblinded", "outcomes were looked at",
+    {Kind::study_unblinded, "study-unblinded", "outcomes were viewed",
      describe_body<UnblindingBody>},
-    {Kind::participant_replaced, "participant-replaced", "the participant was replaced by another",
-     describe_body<ReplacementBody>},
+    {Kind::participant_replaced, "participant-replaced",
+     "another participant took over the enrolment number", describe_body<ReplacementBody>},
     {Kind::participant_noted, "participant-noted", "a note or deviation after the session",
      describe_body<NoteBody>},
     {Kind::heads_kept, "heads-kept", "the head files of the database changed",
@@ -53,44 +53,44 @@ constexpr auto kKinds = std::to_array<EventKindRow>({
      "a loss of events that the head file records was accepted", describe_body<LossBody>},
 
     {Kind::opened, "opened", "the session begins", describe_body<SessionOpening>, 8,
-     secret_text("schedule and layout, JSON")},
+     secret_text_details("schedule and layout, JSON")},
     {Kind::calibrated, "calibrated", "the device was calibrated", describe_body<TextBody>, 1,
-     about_text("how, or empty")},
+     text_details("how, or empty")},
     {Kind::instructed, "instructed", "the participant has read the instructions",
-     describe_body<TextBody>, 1, about_text("how, or empty")},
+     describe_body<TextBody>, 1, text_details("how, or empty")},
     {Kind::practised, "practised", "the participant answered in practice",
      describe_body<PracticeBody>, 4},
-    {Kind::presented, "presented", "a trial's plane can be felt", describe_body<PresentedBody>},
+    {Kind::presented, "presented", "a trial's plane appeared", describe_body<PresentedBody>},
     {Kind::first_contact, "first-contact", "the stylus came near the plane",
      describe_body<TrialBody>},
     {Kind::answered, "answered", "the participant answered", describe_body<AnswerBody>, 4},
     {Kind::interrupted, "interrupted", "a presentation was interrupted",
-     describe_body<InterruptedBody>, 8, secret_body<InterruptionDetail>()},
+     describe_body<InterruptedBody>, 8, secret_body_details<InterruptionDetail>()},
     {Kind::timed_out, "timed-out", "the time limit was reached without an answer",
      describe_body<TrialBody>},
     {Kind::trace_stored, "trace-stored", "the trial's trace was stored", describe_body<TraceBody>,
-     16, secret_body<TrialMeasures>()},
+     16, secret_body_details<TrialMeasures>()},
     {Kind::break_taken, "break-taken", "a break that the study prescribes", describe_body<TextBody>,
-     1, about_text("empty, or a remark")},
+     1, text_details("empty, or a remark")},
     {Kind::paused, "paused", "the experimenter paused the session", describe_body<PauseBody>, 8},
     {Kind::stopped, "stopped", "the session was ended early", describe_body<StopBody>, 8,
      kSafetyRecord},
     {Kind::noted, "noted", "the experimenter took a note", describe_body<RemarkBody>, 8},
     {Kind::ticked, "ticked", "an item of the day sheet is done", describe_body<TextBody>, 1,
-     about_text("code of the item")},
+     text_details("code of the item")},
     {Kind::deviated, "deviated", "a deviation from the protocol", describe_body<DeviationBody>, 8,
      kSafetyRecord},
     {Kind::questioned, "questioned", "a questionnaire was filled in", describe_body<TextBody>, 8,
-     about_text("name of the questionnaire", "the answers, JSON")},
+     text_details("name of the questionnaire", "the answers, JSON")},
     {Kind::explored_again, "explored-again",
      "the participant returned to the plane before answering", describe_body<TrialBody>},
     {Kind::block_restarted, "block-restarted", "a block was restarted", describe_body<BlockBody>, 8,
-     secret_text("the block in its new order, JSON")},
+     secret_text_details("the block in its new order, JSON")},
     {Kind::resumed, "resumed", "the session was resumed", describe_body<ResumedBody>, 2},
     {Kind::marked, "marked", "marks were sent to other instruments since the last such event",
-     describe_body<EmptyBody>, 32, secret_body<MarksBody>()},
+     describe_body<EmptyBody>, 32, secret_body_details<MarksBody>()},
     {Kind::closed, "closed", "the session ends", describe_body<ClosedBody>, 8,
-     secret_body<ChainEnd>(true)},
+     secret_body_details<ChainEnd>(true)},
 });
 
 constexpr bool rows_follow_kinds() {
@@ -101,11 +101,11 @@ constexpr bool rows_follow_kinds() {
 }
 static_assert(rows_follow_kinds());
 
-std::string words_of(std::int64_t min) {
+std::string range_words(std::int64_t min) {
   return min == 0 ? "" : " from " + std::to_string(min);
 }
 
-/// Lists members, as none has a value.
+/// Lists the members of a body, regardless of their values.
 class MemberList final : public BodyIo {
  public:
   std::vector<ListedMember> list;
@@ -113,23 +113,23 @@ class MemberList final : public BodyIo {
  private:
   void add(const Member& member, std::string type) { list.push_back({member, std::move(type)}); }
 
-  bool has(const Member& /*member*/, bool /*there*/) override { return true; }
+  bool has(const Member& /*member*/, bool /*has_value*/) override { return true; }
   void text(const Member& member, std::string& /*value*/) override { add(member, "text"); }
   void boolean(const Member& member, bool& /*value*/) override { add(member, "true or false"); }
   void number(const Member& member, double& /*value*/) override { add(member, "number"); }
-  void whole(const Member& member, std::int64_t& /*value*/, std::int64_t /*max*/) override {
-    add(member, "whole number" + words_of(member.note.min));
+  void integer(const Member& member, std::int64_t& /*value*/, std::int64_t /*max*/) override {
+    add(member, "whole number" + range_words(member.note.min));
   }
   void bytes(const Member& member, std::span<std::uint8_t> value) override {
     add(member, std::to_string(2 * value.size()) + " hexadecimal digits");
   }
-  void word(const Member& member, std::size_t& /*at*/,
+  void word(const Member& member, std::size_t& /*index*/,
             std::span<const std::string_view> words) override {
-    std::string all;
+    std::string word_list;
     for (const std::string_view word : words) {
-      all += (all.empty() ? "`" : ", `") + std::string(word) + "`";
+      word_list += (word_list.empty() ? "`" : ", `") + std::string(word) + "`";
     }
-    add(member, std::move(all));
+    add(member, std::move(word_list));
   }
   void numbers(const Member& member, std::span<double> value) override {
     add(member, std::to_string(value.size()) + " numbers");
@@ -137,11 +137,11 @@ class MemberList final : public BodyIo {
   void numbers(const Member& member, std::vector<double>& /*value*/) override {
     add(member, "list of numbers");
   }
-  void wholes(const Member& member, std::vector<std::int64_t>& /*value*/,
-              std::int64_t /*max*/) override {
-    add(member, "list of whole numbers" + words_of(member.note.min));
+  void integers(const Member& member, std::vector<std::int64_t>& /*value*/,
+                std::int64_t /*max*/) override {
+    add(member, "list of whole numbers" + range_words(member.note.min));
   }
-  void within(const Member& member, const std::function<void(BodyIo&)>& describe) override {
+  void object(const Member& member, const std::function<void(BodyIo&)>& describe) override {
     add(member, "object");
     MemberList inner;
     describe(inner);
@@ -176,9 +176,9 @@ std::vector<ListedMember> members_of(DescribeBody describe) {
 
 const std::vector<ListedMember>& members_of(EventKind kind) {
   static const auto members = [] {
-    std::vector<std::vector<ListedMember>> all;
-    for (const EventKindRow& row : kKinds) all.push_back(members_of(row.body));
-    return all;
+    std::vector<std::vector<ListedMember>> members_by_kind;
+    for (const EventKindRow& row : kKinds) members_by_kind.push_back(members_of(row.body));
+    return members_by_kind;
   }();
   return members.at(static_cast<std::size_t>(kind));
 }

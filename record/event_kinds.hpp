@@ -1,5 +1,5 @@
-/// \file What distinguishes the kinds of events: a row for each, from which names, sealing, the
-/// split of bodies and the data dictionary follow.
+/// \file The table of event kinds. Names, sealing, the split of bodies and the data dictionary
+/// follow from it.
 #pragma once
 
 #include "record/body_io.hpp"
@@ -16,7 +16,7 @@ namespace touchtrial::record {
 /// The sealed parts of all events are padded to a multiple of this many bytes.
 inline constexpr std::size_t kSealedUnit = 32;
 
-/// Visits the members of a body that has no values.
+/// Visits the members of an empty body.
 using DescribeBody = void (*)(BodyIo& io);
 
 template <typename Body>
@@ -25,22 +25,22 @@ void describe_body(BodyIo& io) {
 }
 
 struct EventKindRow {
-  /// What most kinds lack.
-  struct More {
+  /// Details that most kinds do not have.
+  struct Details {
     std::string_view text{};                ///< what the member `text` of a TextBody holds
-    DescribeBody secret = nullptr;          ///< of a sealed text beside the body, if it has members
-    std::string_view secret_description{};  ///< what else it is; empty: there is none
-    bool in_safety_record = false;          ///< sealed for safety_key()
+    DescribeBody secret = nullptr;          ///< members of a sealed JSON text beside the body
+    std::string_view secret_description{};  ///< of a sealed text of other form; empty: none
+    bool in_safety_record = false;          ///< sealed with safety_key()
   };
 
   EventKind kind;
   std::string_view name;     ///< as stored: the enumerator with hyphens
   std::string_view meaning;  ///< one clause, for people
   DescribeBody body;
-  /// Padding of the sealed part in kSealedUnit. Answers and times fit into it, so sizes reveal
-  /// nothing.
+  /// Size of the sealed part after padding, in kSealedUnit. Answers and times fit into it, so that
+  /// sizes reveal nothing.
   std::size_t sealed_units = 1;
-  More more{};
+  Details details{};
 };
 
 /// Every kind, in the order of EventKind.
@@ -51,7 +51,7 @@ struct EventKindRow {
 struct ListedMember {
   BodyIo::Member member;
   std::string type;                    ///< in words, with its range
-  std::vector<ListedMember> within{};  ///< of an object
+  std::vector<ListedMember> within{};  ///< members of an object
 };
 
 [[nodiscard]] std::vector<ListedMember> members_of(DescribeBody describe);

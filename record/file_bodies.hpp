@@ -1,5 +1,5 @@
-/// \file The bodies of events on the file's chain. Each struct is one JSON object whose members its
-/// `describe` lists with their meaning.
+/// \file The bodies of events on the file's chain. Each struct is one JSON object; `describe`
+/// lists its members.
 #pragma once
 
 #include "core/hash.hpp"
@@ -56,9 +56,9 @@ struct StudyCommitment {
     io("scored_trials", scored_trials, "presentations to a participant that count");
     io("positions", positions, "pictures to choose from");
     io("simulated", simulated, "whether participants are simulated");
-    io("pilot", pilot, "whether the database holds pilot sessions, and no others");
+    io("pilot", pilot, "whether the database contains only pilot sessions");
     io("safety_record_years", safety_record_years,
-       "how long the safety record of an erased person is kept");
+       "years for which the safety record of an erased person is kept");
     io("program_version", program_version, "version of the program");
     io("investigator", investigator,
        "Ed25519 public half that verifies what the investigator signed");
@@ -80,23 +80,24 @@ struct SessionOpenedBody {
   PublicKey remarks{};
   PublicKey reasons{};
   int station = 0;      ///< 0: not collected
-  int own_session = 0;  ///< likewise
+  int own_session = 0;  ///< 0: not collected
 
   void describe(BodyIo& io) {
     io("session", session, "the session's number", {.min = 1});
     io("participant", participant, "the participant's id");
     io("enrolment", enrolment, "decides the schedule", {.min = 1});
-    io.unless(1, "visit", visit, "of the participant; absent: the first", {.min = 2});
+    io.omit_if(1, "visit", visit, "of the participant; absent: the first", {.min = 2});
     io("first", first, "hash of the session's `opened`");
     io("key", key, "SHA-256 of the participant's wrapped key");
     io("safety_key", safety_key, "SHA-256 of the wrapped safety key");
     io("kept", kept,
-       "SHA-256 of the station's copy of the key, which is there while the session is open; "
+       "SHA-256 of the station's copy of the key, which is stored while the session is open; "
        "absent: it began without one");
     io("remarks", remarks, "public half that seals remarks about the participant");
     io("reasons", reasons, "public half that seals reasons and deviations");
-    io.if_any("station", station, "in a collected study the session's station", {.min = 1});
-    io.if_any("own_session", own_session, "in a collected study its number there", {.min = 1});
+    io.omit_if_empty("station", station, "the session's station, in a collected study", {.min = 1});
+    io.omit_if_empty("own_session", own_session, "its number at that station, in a collected study",
+                     {.min = 1});
   }
 };
 
@@ -110,7 +111,7 @@ struct SessionClosedBody {
   void describe(BodyIo& io) {
     io("session", session, "the session's number", {.min = 1});
     io("length", length, "number of events of its chain", {.min = 1});
-    io("head", head, "hash of the last");
+    io("head", head, "hash of the last of these events");
     io("complete", complete, "whether the schedule was finished");
   }
 };
@@ -124,15 +125,15 @@ struct ParticipantBody {
   void describe(BodyIo& io) {
     io("session", session, "the session's number", {.min = 1});
     io("reason", reason, "why", {.sealed = true});
-    io.if_any("after_outcomes", after_outcomes, "the participant's outcomes had been seen");
+    io.omit_if_empty("after_outcomes", after_outcomes, "the participant's outcomes had been seen");
   }
 };
 
-/// What a withdrawal retains of the participant. Erased data cannot be restored.
+/// The participant's data that a withdrawal retains. Erased data cannot be restored.
 enum class Retention {
   data,           ///< everything; the participant only leaves the study
   safety_record,  ///< stops, faults, largest forces, reasons and deviations
-  nothing         ///< nothing that is sealed
+  nothing         ///< no sealed data
 };
 inline constexpr std::array<std::string_view, 3> kRetentionNames = {"data", "safety-record",
                                                                     "nothing"};
@@ -146,9 +147,9 @@ struct WithdrawalBody {
 
   void describe(BodyIo& io) {
     io("session", session, "the session's number", {.min = 1});
-    io.choice("kept", kept, kRetentionNames, "what is retained, see [Withdrawal](#withdrawal)");
+    io.choice("kept", kept, kRetentionNames, "the retained data, see [Withdrawal](#withdrawal)");
     io("reason", reason, "why", {.sealed = true});
-    io.if_any("not_erased", not_erased, "copies that the erasure does not reach");
+    io.omit_if_empty("not_erased", not_erased, "copies that the erasure does not reach");
   }
 };
 
@@ -175,7 +176,7 @@ struct NoteBody {
 
   void describe(BodyIo& io) {
     io("session", session, "the session's number", {.min = 1});
-    io("code", code, "of a deviation, which belongs to the safety record; empty: a remark");
+    io("code", code, "code of a deviation, which belongs to the safety record; empty: a remark");
     io("text", text, "what was noted", {.sealed = true});
   }
 };
@@ -184,9 +185,7 @@ struct NoteBody {
 struct HeadsBody {
   std::string also;
 
-  void describe(BodyIo& io) {
-    io("also", also, "folder of a second head file; empty: there is none");
-  }
+  void describe(BodyIo& io) { io("also", also, "folder of a second head file; empty: none"); }
 };
 
 /// `loss-accepted`.
@@ -197,7 +196,7 @@ struct LossBody {
 
   void describe(BodyIo& io) {
     io("reason", reason, "why");
-    io("missing", missing, "what the database lacks, in words that name no outcome");
+    io("missing", missing, "what the database lacks, without outcomes");
     io("answers", answers, "acknowledged answers that are lost");
   }
 };
@@ -213,13 +212,13 @@ struct UnblindingBody {
   void describe(BodyIo& io) {
     io("reason", reason, "why");
     io("interim", interim, "the study was still open");
-    io.if_any("question_alone", question_alone,
-              "shows the answer to the registered question and nothing else");
+    io.omit_if_empty("question_alone", question_alone,
+                     "shows only the answer to the registered question");
     io("sessions", sessions,
-       "in a collected study those that an interim look, or one at a participant, shows",
+       "in a collected study, the sessions that an interim look, or one at a participant, shows",
        {.min = 1});
-    io.if_any("participant", participant,
-              "whose outcomes alone are looked at; absent: everybody's");
+    io.omit_if_empty("participant", participant,
+                     "the only participant whose outcomes are shown; absent: all participants");
   }
 };
 

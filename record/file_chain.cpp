@@ -10,7 +10,7 @@ namespace touchtrial::record {
 
 namespace {
 
-/// The sessions that had ended by then.
+/// The sessions that ended in this part of the chain.
 std::set<int> ended_in(std::span<const Event> chain) {
   std::set<int> ended;
   for (const Event& event : chain) {
@@ -19,7 +19,7 @@ std::set<int> ended_in(std::span<const Event> chain) {
   return ended;
 }
 
-/// The participant's sessions that had been opened by then.
+/// The participant's sessions that were opened in this part of the chain.
 std::set<int> sessions_in(std::span<const Event> chain, const std::string& participant) {
   std::set<int> sessions;
   for (const Event& event : chain) {
@@ -38,21 +38,23 @@ StudyState state_of_chain(std::span<const Event> chain) {
     const Event& event = chain[i];
     if (event.kind == EventKind::study_closed) state.closed = true;
     if (event.kind != EventKind::study_unblinded) continue;
-    const std::span<const Event> before = chain.first(i);
+    const std::span<const Event> earlier_events = chain.first(i);
     const UnblindingBody body = body_of<UnblindingBody>(event);
-    std::optional<std::set<int>> named;
-    if (body.sessions) named.emplace(body.sessions->begin(), body.sessions->end());
+    std::optional<std::set<int>> named_sessions;
+    if (body.sessions) named_sessions.emplace(body.sessions->begin(), body.sessions->end());
     if (!body.participant.empty()) {
       state.looks.push_back({body.participant, body.reason, event.at});
-      state.looked_at.merge(named ? *named : sessions_in(before, body.participant));
+      state.looked_at.merge(named_sessions ? *named_sessions
+                                           : sessions_in(earlier_events, body.participant));
       continue;
     }
     state.unblinded = !body.question_alone;
     state.unblinding_reason = body.reason;
     state.interim.reset();
     state.question.reset();
-    if (body.question_alone) state.question = ended_in(before);
-    if (body.interim && state.unblinded) state.interim = named ? *named : ended_in(before);
+    if (body.question_alone) state.question = ended_in(earlier_events);
+    if (body.interim && state.unblinded)
+      state.interim = named_sessions ? *named_sessions : ended_in(earlier_events);
   }
   return state;
 }
@@ -62,7 +64,7 @@ void FileChain::add(const Event& event) {
     ends_and_looks_.push_back(event);
   }
   if ((event.kind == EventKind::study_committed) != !commitment_) {
-    throw EventFault(event, commitment_ ? "the study is committed twice"
+    throw EventFault(event, commitment_ ? "the study is already committed"
                                         : "the first event does not commit the study");
   }
   switch (event.kind) {
@@ -88,7 +90,7 @@ void FileChain::add(const Event& event) {
         throw EventFault(event, "an event of this kind belongs to a session");
       }
       require_members(event);
-      if (session_about(event) > 0) static_cast<void>(known(event));
+      if (session_about(event) > 0) static_cast<void>(named_session(event));
   }
 }
 
@@ -99,38 +101,38 @@ void FileChain::open_session(const Event& event) {
     throw EventFault(event, "session " + std::to_string(body.session) +
                                 " is not opened in its turn [session-order]");
   }
-  if (unique_ == UniquePlaces::always) take_place(event, body);
+  if (unique_ == UniquePlaces::always) reserve_place(event, body);
   SessionOnFile& session = sessions_[body.session];
   session.opened = body;
   session.opened_at = event.sequence;
 }
 
-void FileChain::take_place(const Event& event, const SessionOpenedBody& body) {
+void FileChain::reserve_place(const Event& event, const SessionOpenedBody& body) {
   if (!participants_.emplace(body.participant, body.visit).second) {
-    throw EventFault(event, "participant " + body.participant + " has a session already");
+    throw EventFault(event, "participant " + body.participant + " already has a session");
   }
   if (!enrolments_.emplace(body.enrolment, body.visit).second) {
-    throw EventFault(event, "enrolment " + std::to_string(body.enrolment) + " is taken already");
+    throw EventFault(event, "enrolment " + std::to_string(body.enrolment) + " is already taken");
   }
-  if (body.visit > 1) require_visit_before(event, body);
+  if (body.visit > 1) require_previous_visit(event, body);
 }
 
 /// A later visit follows a complete one of the same participant.
-void FileChain::require_visit_before(const Event& event, const SessionOpenedBody& body) const {
-  const bool found = std::ranges::any_of(sessions_, [&](const auto& entry) {
-    const SessionOnFile& one = entry.second;
-    return one.opened.participant == body.participant && one.opened.visit == body.visit - 1 &&
-           one.opened.enrolment == body.enrolment && one.closed && one.closed->complete &&
-           !one.replaced_at;
+void FileChain::require_previous_visit(const Event& event, const SessionOpenedBody& body) const {
+  const bool has_previous_visit = std::ranges::any_of(sessions_, [&](const auto& entry) {
+    const SessionOnFile& session = entry.second;
+    return session.opened.participant == body.participant &&
+           session.opened.visit == body.visit - 1 && session.opened.enrolment == body.enrolment &&
+           session.closed && session.closed->complete && !session.replaced_at;
   });
-  if (found) return;
+  if (has_previous_visit) return;
   throw EventFault(event, "visit " + std::to_string(body.visit) + " of participant " +
                               body.participant + " follows no complete visit");
 }
 
 void FileChain::close_session(const Event& event) {
   const SessionClosedBody body = body_of<SessionClosedBody>(event);
-  SessionOnFile& session = known(event);
+  SessionOnFile& session = named_session(event);
   if (session.closed) {
     throw EventFault(event, "session " + std::to_string(body.session) + " is closed twice");
   }
@@ -138,23 +140,23 @@ void FileChain::close_session(const Event& event) {
   session.closed_at = event.sequence;
 }
 
-/// An exclusion cannot be presented as one from before a look.
+/// An exclusion after a look must state that the outcomes had been seen.
 void FileChain::exclude(const Event& event) {
   const ParticipantBody body = body_of<ParticipantBody>(event);
-  known(event).excluded_at = event.sequence;
+  named_session(event).excluded_at = event.sequence;
   if (body.after_outcomes || !state_of_chain(ends_and_looks_).shows(body.session)) return;
-  throw EventFault(event, "hides that the outcomes of session " + std::to_string(body.session) +
+  throw EventFault(event, "conceals that the outcomes of session " + std::to_string(body.session) +
                               " had been seen before it was excluded");
 }
 
 void FileChain::withdraw(const Event& event) {
   const WithdrawalBody body = body_of<WithdrawalBody>(event);
-  SessionOnFile& session = known(event);
-  const auto refuse = [&](const std::string& why) {
-    throw EventFault(event, "session " + std::to_string(body.session) + " " + why);
+  SessionOnFile& session = named_session(event);
+  const auto refuse = [&](const std::string& reason) {
+    throw EventFault(event, "session " + std::to_string(body.session) + " " + reason);
   };
   if (body.kept == Retention::data && session.erased_at)
-    refuse("keeps data that were erased before");
+    refuse("retains data that were already erased");
   if (body.kept == Retention::safety_record && session.erased_at) refuse("is erased twice");
   if (body.kept == Retention::nothing && !session.erased_at) {
     refuse("loses its safety record before its outcomes");
@@ -176,7 +178,7 @@ void FileChain::withdraw(const Event& event) {
 
 void FileChain::replace(const Event& event) {
   const ReplacementBody body = body_of<ReplacementBody>(event);
-  SessionOnFile& session = known(event);
+  SessionOnFile& session = named_session(event);
   if (!session.replaced_by.empty()) {
     throw EventFault(event, "session " + std::to_string(body.session) + " is replaced twice");
   }
@@ -187,7 +189,7 @@ void FileChain::replace(const Event& event) {
 }
 
 /// The session that an event is about.
-SessionOnFile& FileChain::known(const Event& event) {
+SessionOnFile& FileChain::named_session(const Event& event) {
   const int session = session_about(event);
   const auto found = sessions_.find(session);
   if (found == sessions_.end()) {
@@ -211,9 +213,9 @@ Signatories::Signatories(const Event& committed) {
 }
 
 void Signatories::require(const Event& event) const {
-  const bool by_station =
+  const bool is_by_station =
       station_ && event.kind != EventKind::study_unblinded && is_event_signed_by(*station_, event);
-  if (by_station || is_event_signed_by(investigator_, event)) return;
+  if (is_by_station || is_event_signed_by(investigator_, event)) return;
   throw EventFault(event,
                    event.kind == EventKind::study_unblinded
                        ? "the investigator did not sign the event [unsigned-look]"
@@ -297,11 +299,13 @@ void SessionCheck::finish(const DerivedRows& rows) const {
 }
 
 void SessionCheck::check_keys(const WrappedKeys& stored) const {
-  const auto check = [&](const std::optional<Bytes>& key, const Digest& digest, bool erased,
+  const auto check = [&](const std::optional<Bytes>& key, const Digest& digest, bool is_erased,
                          const std::string& name, const std::string& short_name) {
-    const auto refuse = [&](const std::string& why) { throw EventFault(session_, kNoEvent, why); };
-    if (!key && !erased) refuse(name + " is missing without a withdrawal [missing-key]");
-    if (key && erased)
+    const auto refuse = [&](const std::string& reason) {
+      throw EventFault(session_, kNoEvent, reason);
+    };
+    if (!key && !is_erased) refuse(name + " is missing without a withdrawal [missing-key]");
+    if (key && is_erased)
       refuse("the participant withdrew, but " + short_name + " is still there [kept-key]");
     if (key && sha256(*key) != digest) refuse(name + " was altered [altered-key]");
   };

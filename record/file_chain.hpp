@@ -1,4 +1,4 @@
-/// \file The state of the study and its sessions by the file's chain, and the check of sessions
+/// \file The state of the study and its sessions, from the file's chain, and the check of sessions
 ///   against it.
 #pragma once
 
@@ -34,15 +34,15 @@ struct StudyState {
   std::string unblinding_reason;  ///< of the last unblinding of the study
   /// If the last unblinding was an interim look: the sessions that had ended before it.
   std::optional<std::set<int>> interim;
-  /// If the last unblinding showed the registered question alone: the sessions that had ended
+  /// If the last unblinding showed only the registered question: the sessions that had ended
   /// before it. The study then still counts as blind, except for the report of that question.
   std::optional<std::set<int>> question;
 
-  std::vector<PersonLook> looks;  ///< each at one participant, in order
-  std::set<int> looked_at;        ///< the sessions that the looks show
+  std::vector<PersonLook> looks;  ///< looks at one participant each, in order
+  std::set<int> looked_at;        ///< the sessions that these looks show
 
   /// Whether the study's results, or the answer to its registered question, include a session. An
-  /// interim look shows nothing of sessions that end after it.
+  /// interim look excludes sessions that end after it.
   [[nodiscard]] bool reports(int session) const {
     if (question) return question->contains(session);
     return unblinded && (!interim || interim->contains(session));
@@ -57,23 +57,23 @@ struct StudyState {
 /// \throws EventFault if a body cannot be read
 [[nodiscard]] StudyState state_of_chain(std::span<const Event> chain);
 
-/// One session by the file's chain.
+/// One session, from the file's chain.
 struct SessionOnFile {
   SessionOpenedBody opened;
   std::optional<SessionClosedBody> closed;
   std::string replaced_by;  ///< empty: not replaced
 
-  // Sequences on the file's chain; of several exclusions or withdrawals the last.
+  // Sequence numbers on the file's chain; of the last exclusion or withdrawal if there are several.
   std::int64_t opened_at = 0;
   std::optional<std::int64_t> closed_at;
   std::optional<std::int64_t> excluded_at;
   std::optional<std::int64_t> withdrawn_at;
   std::optional<std::int64_t> erased_at;         ///< the participant's key was destroyed
-  std::chrono::nanoseconds erased_time{};        ///< UTC, if erased_at is there
+  std::chrono::nanoseconds erased_time{};        ///< UTC; meaningful with erased_at
   std::optional<std::int64_t> safety_erased_at;  ///< the safety key was destroyed
   std::optional<std::int64_t> replaced_at;
 
-  /// The number that the session has in the file that it was recorded in.
+  /// The session's number in the file that it was recorded in.
   [[nodiscard]] int own_session() const noexcept {
     return opened.own_session > 0 ? opened.own_session : opened.session;
   }
@@ -85,8 +85,8 @@ struct SessionOnFile {
 
 /// When participant ids and enrolment numbers must be unique, each with its visit.
 enum class UniquePlaces {
-  always,     ///< at every moment, among sessions not yet replaced: a station's own file
-  in_the_end  ///< among sessions that were never replaced, which collected_chain ensures
+  always,  ///< at every event, among sessions not yet replaced: a station's file
+  at_end   ///< among sessions that were never replaced, which collected_chain ensures
 };
 
 /// The events of the file's chain in order, checked against each other. Links and hashes are not
@@ -95,12 +95,12 @@ class FileChain {
  public:
   explicit FileChain(UniquePlaces unique = UniquePlaces::always) : unique_(unique) {}
 
-  /// \throws EventFault if the event cannot follow those before
+  /// \throws EventFault if the event cannot follow the earlier ones
   void add(const Event& event);
 
-  /// Empty only before the first event.
+  /// The study's commitment; empty only before the first event.
   [[nodiscard]] const std::optional<StudyCommitment>& commitment() const { return commitment_; }
-  /// By number.
+  /// All sessions, by number.
   [[nodiscard]] const std::map<int, SessionOnFile>& sessions() const { return sessions_; }
 
  private:
@@ -109,17 +109,17 @@ class FileChain {
   void exclude(const Event& event);
   void withdraw(const Event& event);
   void replace(const Event& event);
-  [[nodiscard]] SessionOnFile& known(const Event& event);
-  void take_place(const Event& event, const SessionOpenedBody& body);
-  void require_visit_before(const Event& event, const SessionOpenedBody& body) const;
+  [[nodiscard]] SessionOnFile& named_session(const Event& event);
+  void reserve_place(const Event& event, const SessionOpenedBody& body);
+  void require_previous_visit(const Event& event, const SessionOpenedBody& body) const;
 
   UniquePlaces unique_;
   std::optional<StudyCommitment> commitment_;
   std::map<int, SessionOnFile> sessions_;
-  /// With the visit; only of sessions that were not replaced.
+  /// Places in use, each with its visit, of sessions that were not replaced.
   std::set<std::pair<std::string, int>> participants_;
   std::set<std::pair<int, int>> enrolments_;
-  std::vector<Event> ends_and_looks_;  ///< they decide whose outcomes were seen
+  std::vector<Event> ends_and_looks_;  ///< these events decide whose outcomes were seen
   bool closed_ = false;
 };
 
@@ -143,7 +143,7 @@ class Signatories {
 /// \throws EventFault at the first fault
 [[nodiscard]] FileChain checked_file_chain(std::span<const Event> chain);
 
-/// The trace that a trace-stored event names.
+/// The trace that a trace-stored event commits to.
 struct TraceClaim {
   std::int64_t sequence = 0;  ///< of the event
   Digest digest{};
@@ -153,16 +153,16 @@ struct TraceClaim {
 /// naming the event, at the first fault.
 class SessionCheck {
  public:
-  /// \param session  its number here
+  /// \param session  its number in this file
   /// \param on_file, commitment  outlive this
   SessionCheck(int session, const SessionOnFile& on_file, const StudyCommitment& commitment);
 
   /// Adds the next event: checks its link, and whether the opening matches the file's chain.
   /// \param rows  updated
   void add(const Event& event, DerivedRows& rows);
-  /// After the last event: checks the session's end against the file's chain.
+  /// Checks the session's end against the file's chain. Call after the last event.
   void finish(const DerivedRows& rows) const;
-  /// Checks that the stored keys are those of the session's opening, except those destroyed since.
+  /// Checks that the stored keys match the opening, except for keys that were destroyed since.
   void check_keys(const WrappedKeys& stored) const;
 
   /// All traces that the events name, by trial.

@@ -12,8 +12,8 @@
 namespace touchtrial::record {
 namespace {
 
-[[noreturn]] void refuse_trial(const Event& event, int trial, const char* why) {
-  throw EventFault(event, "trial " + std::to_string(trial) + " " + why);
+[[noreturn]] void refuse_trial(const Event& event, int trial, const char* reason) {
+  throw EventFault(event, "trial " + std::to_string(trial) + " " + reason);
 }
 
 void open_session(DerivedRows& rows, const Event& event) {
@@ -53,15 +53,16 @@ void refuse_if_voided(const TrialRow& row, const Event& event) {
 void present_trial(DerivedRows& rows, const Event& event) {
   const PresentedBody body = body_of<PresentedBody>(event);
   const TrialId id(event.session, body.trial);
-  const auto before = rows.trials.find(id);
-  if (before != rows.trials.end()) {
+  const auto earlier = rows.trials.find(id);
+  if (earlier != rows.trials.end()) {
     // After an interruption a trial may be presented again; a response or a trace makes it final.
-    const TrialRow& row = before->second;
+    const TrialRow& row = earlier->second;
     refuse_if_voided(row, event);
     if (row.state == TrialState::answered) {
-      refuse_trial(event, body.trial, "is presented again after its answer");
+      refuse_trial(event, body.trial, "is presented again after it was answered");
     }
-    if (row.has_trace()) refuse_trial(event, body.trial, "is presented again after its trace");
+    if (row.has_trace())
+      refuse_trial(event, body.trial, "is presented again after its trace was stored");
   }
   TrialRow row;
   row.session = event.session;
@@ -79,27 +80,27 @@ TrialRow& presented_row(DerivedRows& rows, const Event& event, int trial) {
   return found->second;
 }
 
-/// A trial without an answer yet; the answer may also follow a timeout.
-TrialRow& waiting_row(DerivedRows& rows, const Event& event, int trial) {
+/// A trial that may still be answered, also after a timeout.
+TrialRow& unanswered_row(DerivedRows& rows, const Event& event, int trial) {
   TrialRow& row = presented_row(rows, event, trial);
   if (row.state == TrialState::answered) refuse_trial(event, trial, "is already answered");
   if (row.state == TrialState::interrupted) refuse_trial(event, trial, "was interrupted");
   return row;
 }
 
-void touch_plane(DerivedRows& rows, const Event& event) {
+void note_contact(DerivedRows& rows, const Event& event) {
   const int trial = body_of<TrialBody>(event).trial;
-  TrialRow& row = waiting_row(rows, event, trial);
+  TrialRow& row = unanswered_row(rows, event, trial);
   if (!row.contact_at) row.contact_at = event.time();
 }
 
 void pause_trial(DerivedRows& rows, const Event& event) {
   const PauseBody body = body_of<PauseBody>(event);
-  if (body.trial) waiting_row(rows, event, *body.trial).paused = true;
+  if (body.trial) unanswered_row(rows, event, *body.trial).paused = true;
 }
 
 void answer_trial(DerivedRows& rows, const Event& event, const AnswerBody& body) {
-  TrialRow& row = waiting_row(rows, event, body.trial);
+  TrialRow& row = unanswered_row(rows, event, body.trial);
   row.state = TrialState::answered;
   row.answered_at = event.time();
   row.answer = body.answer;
@@ -112,10 +113,10 @@ void answer_trial(DerivedRows& rows, const Event& event, const AnswerBody& body)
 
 void end_trial(DerivedRows& rows, const Event& event, TrialState state) {
   const int trial = body_of<TrialBody>(event).trial;
-  waiting_row(rows, event, trial).state = state;
+  unanswered_row(rows, event, trial).state = state;
 }
 
-void measure_trial(DerivedRows& rows, const Event& event, const TraceBody& body) {
+void set_measures(DerivedRows& rows, const Event& event, const TraceBody& body) {
   TrialRow& row = presented_row(rows, event, body.trial);
   row.valid = body.valid;
   row.hand = body.hand;
@@ -126,7 +127,7 @@ void measure_trial(DerivedRows& rows, const Event& event, const TraceBody& body)
 
 void explore_again(DerivedRows& rows, const Event& event) {
   const int trial = body_of<TrialBody>(event).trial;
-  ++waiting_row(rows, event, trial).explorations;
+  ++unanswered_row(rows, event, trial).explorations;
 }
 
 /// Every presented trial of the block becomes void. Its new trials have new numbers, so that
@@ -178,7 +179,7 @@ void withdraw_participant(DerivedRows& rows, const Event& event) {
 }
 
 /// In a collected study the file's chain states the station of a session.
-void place_session(DerivedRows& rows, const Event& event) {
+void set_station(DerivedRows& rows, const Event& event) {
   const SessionOpenedBody body = body_of<SessionOpenedBody>(event);
   if (body.station > 0) named_row(rows, event).station = body.station;
 }
@@ -189,7 +190,7 @@ void fold_session_event(DerivedRows& rows, const Event& event) {
     case EventKind::presented:
       return present_trial(rows, event);
     case EventKind::first_contact:
-      return touch_plane(rows, event);
+      return note_contact(rows, event);
     case EventKind::answered:
       return answer_trial(rows, event, body_of<AnswerBody>(event));
     case EventKind::interrupted:
@@ -197,7 +198,7 @@ void fold_session_event(DerivedRows& rows, const Event& event) {
     case EventKind::timed_out:
       return end_trial(rows, event, TrialState::timed_out);
     case EventKind::trace_stored:
-      return measure_trial(rows, event, body_of<TraceBody>(event));
+      return set_measures(rows, event, body_of<TraceBody>(event));
     case EventKind::explored_again:
       return explore_again(rows, event);
     case EventKind::paused:
@@ -236,7 +237,7 @@ void fold(DerivedRows& rows, const Event& event) {
     case EventKind::opened:
       return open_session(rows, event);
     case EventKind::session_opened:
-      return place_session(rows, event);
+      return set_station(rows, event);
     case EventKind::participant_excluded:
       named_row(rows, event).excluded = true;
       return;
@@ -251,7 +252,7 @@ void fold(DerivedRows& rows, const Event& event) {
 
 void fold(DerivedRows& rows, const Event& event, const TraceBody& body) {
   open_row(rows, event);
-  measure_trial(rows, event, body);
+  set_measures(rows, event, body);
 }
 
 void fold(DerivedRows& rows, const Event& event, const BodyParts& body) {
@@ -262,9 +263,9 @@ void fold(DerivedRows& rows, const Event& event, const BodyParts& body) {
                           return from_parts<AnswerBody>(body);
                         }));
   }
-  Event whole = event;
-  whole.body = joined_body(body);
-  fold(rows, whole);
+  Event opened = event;
+  opened.body = join_body(body);
+  fold(rows, opened);
 }
 
 }  // namespace touchtrial::record

@@ -1,6 +1,5 @@
-/// \file The rows of sessions and trials that follow from events. One function derives them as
-///   events arrive, when a whole session is added, when tables are verified, and, with answers and
-///   times, from opened events (OpenedEvent).
+/// \file Derives the rows of sessions and trials from stored or opened events. Only opened events
+///   yield answers and times.
 #pragma once
 
 #include "record/event.hpp"
@@ -19,7 +18,7 @@
 namespace touchtrial::record {
 
 enum class SessionState { open, completed, stopped };
-/// Their names in files, in the order of the enumerators.
+/// Names in files, in the order of the enumerators.
 inline constexpr std::array<std::string_view, 3> kSessionStates = {"open", "completed", "stopped"};
 [[nodiscard]] constexpr std::string_view name_of(SessionState state) {
   return kSessionStates[static_cast<std::size_t>(state)];
@@ -34,7 +33,7 @@ struct SessionRow {
   bool pilot = false;
   bool excluded = false;
   bool withdrawn = false;  ///< the participant has withdrawn
-  bool erased = false;     ///< and the participant's key is destroyed
+  bool erased = false;     ///< the participant's key is destroyed
   std::string device;
   /// The participant who inherited the enrolment number; the same participant if the session was
   /// restarted; empty: not replaced.
@@ -45,15 +44,15 @@ struct SessionRow {
   int station = 0;  ///< the station that it was collected from, from 1; 0: recorded in this file
   int visit = 1;    ///< of the participant, from 1
 
-  /// Whether it may still continue, as far as the session itself is concerned.
+  /// Whether the session's own state allows it to continue.
   [[nodiscard]] bool can_resume() const noexcept {
     return state == SessionState::open && !withdrawn && replaced_by.empty();
   }
   friend bool operator==(const SessionRow&, const SessionRow&) = default;
 };
 
-/// How a trial ended. `voided`: its block was restarted, so that this trial no longer counts,
-/// in any state, and is never presented again.
+/// The state of a trial. `voided`: its block was restarted, so that it no longer counts and is
+/// never presented again.
 enum class TrialState { presented, answered, timed_out, interrupted, voided };
 inline constexpr std::array<std::string_view, 5> kTrialStates = {
     "presented", "answered", "timed-out", "interrupted", "voided"};
@@ -69,34 +68,34 @@ struct TrialRow {
   bool valid = true;
   HandWindows hand{};
   std::int64_t overruns = 0;
-  double rate_hz = 0.0;  ///< of the trace; 0: there is none
+  double rate_hz = 0.0;  ///< of the trace; 0: no trace
   int explorations = 1;  ///< of the last presentation
 
-  // Only from opened events; else 0 and empty, as in the tables.
+  // These members are set only from opened events; otherwise they are 0 or empty, as in the tables.
   std::chrono::nanoseconds presented_at{};
   std::optional<std::chrono::nanoseconds> contact_at;
   std::optional<std::chrono::nanoseconds> answered_at;
   std::optional<Answer> answer;  ///< empty: no response
   std::optional<int> confidence;
-  std::optional<std::string> kind;  ///< that an adaptive order chose, as in the schedule
+  std::optional<std::string> kind;  ///< the trial's kind in an adaptive order, as in the schedule
   std::optional<int> track;         ///< from 1; 0: none
   std::optional<int> level;         ///< index into the track's levels
   std::optional<int> target;        ///< index of the right choice
   std::int64_t samples = 0;
 
-  /// The session was paused between the end of the exploration and the answer.
+  /// Whether the session was paused between the end of the exploration and the answer.
   bool paused = false;
 
-  /// From plane-on to the answer; empty without one, and if the session was paused between.
+  /// Time from plane-on to the answer; empty if there is no answer, or if `paused`.
   [[nodiscard]] std::optional<std::chrono::nanoseconds> reaction_time() const;
-  /// The same from the first contact.
+  /// Time from the first contact to the answer; empty in the same cases and without contact.
   [[nodiscard]] std::optional<std::chrono::nanoseconds> from_contact() const;
 
   [[nodiscard]] bool has_trace() const noexcept { return rate_hz > 0.0; }
   friend bool operator==(const TrialRow&, const TrialRow&) = default;
 };
 
-using TrialId = std::pair<int, int>;  ///< session, trial
+using TrialId = std::pair<int, int>;  ///< numbers of session and trial
 
 /// Some or all derived rows.
 struct DerivedRows {
@@ -105,14 +104,14 @@ struct DerivedRows {
 };
 
 /// The session that an event is about: its own, or the one that an event of a file's chain names.
-/// \return 0 if the event is not about a session
-/// \throws EventFault if the event's body names none, and must
+/// \return 0 if events of this kind name no session
+/// \throws EventFault if the event's body lacks its session
 [[nodiscard]] int session_about(const Event& event);
 
-/// Updates `rows` with one more event, stored or opened. Sessions may be folded in any order, the
+/// Updates `rows` with one more stored or opened event. Sessions may be folded in any order, the
 /// events of each session in order, and the file's chain after the sessions that it names.
-/// \throws EventFault if the event's body cannot be read, or the event cannot follow those before;
-///   `rows` are then unchanged
+/// \throws EventFault if the event's body cannot be read, or the event cannot follow the earlier
+///   ones; `rows` is then unchanged
 void fold(DerivedRows& rows, const Event& event);
 /// The same for a trace-stored event whose body was read already.
 void fold(DerivedRows& rows, const Event& event, const TraceBody& body);

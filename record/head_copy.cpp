@@ -17,7 +17,7 @@ constexpr std::size_t kSignatureDigits = 128;
 constexpr std::int64_t kHeadVersion = 1;
 constexpr std::int64_t kMaxEvents = std::numeric_limits<std::int64_t>::max() - 1;
 
-/// The signed text, with a prefix so that no other signed text can pass for a head.
+/// The text that is signed. Its prefix prevents other signed texts from passing for a head.
 std::string head_statement(std::string_view text) {
   return "touchtrial head file 1\n" + std::string(text);
 }
@@ -62,8 +62,8 @@ ChainHead end_from(const JsonObject& object) {
 
 }  // namespace
 
-void refuse_head(const std::filesystem::path& path, const std::string& why) {
-  throw FileError(one_line(path.string() + ": " + why));
+void refuse_head(const std::filesystem::path& path, const std::string& reason) {
+  throw FileError(one_line(path.string() + ": " + reason));
 }
 
 HeadRecord head_record_from(std::string_view text, const std::string& source) {
@@ -96,7 +96,7 @@ std::string head_copy_of(const HeadRecord& record, const Signer& signer,
   const Signature signature = signer.sign(bytes_of(head_statement(slot)));
   slot += "\n" + to_hex(signature) + "\n";
   if (slot.size() >= kHeadCopyBytes) {
-    refuse_head(path, "has room for " + std::to_string(kHeadCopyBytes - 1) + " bytes, and needs " +
+    refuse_head(path, "can hold " + std::to_string(kHeadCopyBytes - 1) + " bytes, but needs " +
                           std::to_string(slot.size()) +
                           "; choose a second folder with a shorter path");
   }
@@ -113,16 +113,16 @@ std::optional<std::pair<std::string_view, Bytes>> parts_of_copy(std::string_view
   if (slot.size() != kHeadCopyBytes || end > kHeadCopyBytes - kSignatureDigits - 2)
     return std::nullopt;
   const std::string_view digits = slot.substr(end + 1, kSignatureDigits);
-  std::string_view rest = slot.substr(end + 1 + kSignatureDigits);
-  if (rest.front() != '\n' || rest.back() != '\n') return std::nullopt;
-  rest = rest.substr(1, std::max(rest.size(), std::size_t{2}) - 2);
-  if (rest.find_first_not_of(' ') != std::string_view::npos) return std::nullopt;
+  std::string_view padding = slot.substr(end + 1 + kSignatureDigits);
+  if (padding.front() != '\n' || padding.back() != '\n') return std::nullopt;
+  padding = padding.substr(1, std::max(padding.size(), std::size_t{2}) - 2);
+  if (padding.find_first_not_of(' ') != std::string_view::npos) return std::nullopt;
   std::optional<Bytes> signature = from_hex(digits);
   if (!signature || to_hex(*signature) != digits) return std::nullopt;
   return std::pair(slot.substr(0, end), std::move(*signature));
 }
 
-/// The owner that an unsigned record claims; empty if it is not a record.
+/// The owner that an unsigned record names; empty if it is not a record.
 std::string claim_of(std::string_view text) {
   try {
     const HeadRecord record = head_record_from(text, "its text");
@@ -135,13 +135,13 @@ std::string claim_of(std::string_view text) {
 }  // namespace
 
 HeadCopy read_head_copy(std::string bytes, std::span<const PublicKey> signers) {
-  HeadCopy copy{.bytes = std::move(bytes), .record = {}, .fault = "is not whole", .claim = {}};
+  HeadCopy copy{.bytes = std::move(bytes), .record = {}, .fault = "is incomplete", .claim = {}};
   const auto parts = parts_of_copy(copy.bytes);
   if (!parts) return copy;
   const std::string_view text = parts->first;
   const Bytes& signature = parts->second;
   const std::string statement = head_statement(text);
-  copy.fault = "is altered, or signed by none of this study's keys";
+  copy.fault = "is altered, or not signed with a key of this study";
   if (std::ranges::none_of(signers, [&](const PublicKey& signer) {
         return is_signed_by(signer, bytes_of(statement), signature);
       })) {

@@ -1,5 +1,5 @@
-/// \file One of the two copies of the record in a head file: its text, its signature, and spaces up
-/// to a fixed size. Format: docs/data-dictionary.md, "Head file".
+/// \file One of the two copies of the record in a head file: text, signature, and padding with
+/// spaces to a fixed size. Format: docs/data-dictionary.md, "Head file".
 #pragma once
 
 #include "core/public_keys.hpp"
@@ -16,22 +16,22 @@ namespace touchtrial::record {
 
 inline constexpr std::size_t kHeadCopyBytes = 12288;
 
-/// A copy after reading.
+/// The result of reading a copy.
 struct HeadCopy {
   std::string bytes;
   std::optional<HeadRecord> record;
   std::string fault;  ///< why the record is missing
-  /// The owner that the copy claims, if it is complete but not signed by a valid signer.
+  /// The owner that a complete copy names if no valid signer signed it.
   std::string claim;
 };
 
 /// The bytes of a copy.
-/// \pre at most kMaxHeadSessions in record.sessions
+/// \pre record.sessions has at most kMaxHeadSessions
 /// \throws FileError, naming `path`, if the record is too long or has a name that is not UTF-8
 [[nodiscard]] std::string head_copy_of(const HeadRecord& record, const Signer& signer,
                                        const std::filesystem::path& path);
 
-/// \param bytes  any
+/// \param bytes  possibly damaged
 /// \param signers  valid public keys
 [[nodiscard]] HeadCopy read_head_copy(std::string bytes, std::span<const PublicKey> signers);
 
@@ -40,6 +40,6 @@ struct HeadCopy {
 [[nodiscard]] HeadRecord head_record_from(std::string_view text, const std::string& source);
 
 /// \throws FileError, naming the file, on one line
-[[noreturn]] void refuse_head(const std::filesystem::path& path, const std::string& why);
+[[noreturn]] void refuse_head(const std::filesystem::path& path, const std::string& reason);
 
 }  // namespace touchtrial::record

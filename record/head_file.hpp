@@ -1,6 +1,7 @@
-/// \file The head file of a database: outside of the database, it records the ends of its chains
-///   and the number of acknowledged answers. A database that was rolled back, lost its write-ahead
-///   log, or had sessions removed from its end, lacks something that its head file records.
+/// \file The head file of a database. It is a separate file that records the ends of the database's
+///   chains and the number of acknowledged answers. A database that was rolled back, lost its
+///   write-ahead log, or had sessions removed from its end lacks something that its head file
+///   records.
 ///
 /// Order of writing: commit in the database, then `update`, then the acknowledgement. A database
 /// that is ahead of its head file is therefore normal. Format: docs/data-dictionary.md, "Head
@@ -26,13 +27,13 @@ namespace touchtrial::record {
 
 class StudyStore;
 
-/// How many open sessions a head file holds; of more, those with the highest numbers.
+/// The most open sessions in a head file; if there are more, those with the highest numbers.
 inline constexpr std::size_t kMaxHeadSessions = 64;
 
 /// The content of a head file.
 struct HeadRecord {
   std::string study_id;
-  std::string station;                ///< its name
+  std::string station;                ///< name of the station
   Digest database{};                  ///< hash of the first event of the file's chain
   std::int64_t count = 0;             ///< number of writes of the file; 0: no file yet
   ChainHead file;                     ///< the end of the file's chain
@@ -40,8 +41,8 @@ struct HeadRecord {
   std::int64_t acknowledged = 0;      ///< answers in the whole database
   std::string also;                   ///< folder of the second head file; empty: there is none
 
-  /// Advance the end of a chain, or the number of answers; never back, because of two programs that
-  /// write to the database the slower one may call this last.
+  /// These functions advance the end of a chain, or the number of answers. They never move it back,
+  /// because the slower of two programs that write to the database may call them last.
   void advance_file(const ChainHead& end);
   void advance_session(int session, const ChainHead& end);
   void advance_answers(std::int64_t answers);
@@ -49,8 +50,8 @@ struct HeadRecord {
   friend bool operator==(const HeadRecord&, const HeadRecord&) = default;
 };
 
-/// The record that matches the current database: for the first record, and after a loss was
-/// accepted. `count` and `also` are not set.
+/// The record of the current database, for a new head file or after a loss was accepted. `count`
+/// and `also` are not set.
 [[nodiscard]] HeadRecord record_of(const StudyStore& store);
 
 /// `<database>.head`.
@@ -59,8 +60,7 @@ struct HeadRecord {
 /// The valid signers of a head file.
 [[nodiscard]] std::vector<PublicKey> head_signers(const StudyCommitment& commitment);
 
-/// Changes a record. It may be called several times, each with another record. `update` itself sets
-/// `count`.
+/// Changes a record. It may be called several times, with different records. `update` sets `count`.
 using HeadChange = std::function<void(HeadRecord&)>;
 
 /// Writes a change to all head files of a database, as `update` does.
@@ -75,11 +75,11 @@ struct HeadReading {
   std::string damage;
 };
 
-/// One head file: two signed copies of its record, which are written alternately. Several programs
-/// and threads may use one file at a time; a lock serialises their changes.
+/// One head file: two signed copies of its record, which are written alternately. A lock serialises
+/// changes by several programs and threads.
 class HeadFile {
  public:
-  /// \param timeout  for another program that holds the lock
+  /// \param timeout  how long to wait for the lock
   explicit HeadFile(std::filesystem::path path,
                     std::chrono::milliseconds timeout = std::chrono::seconds(30));
 
@@ -91,17 +91,17 @@ class HeadFile {
   /// \throws FileError if no copy is complete and signed by one of `signers`, or the file cannot be
   ///   read
   [[nodiscard]] std::optional<HeadRecord> read(std::span<const PublicKey> signers) const;
-  /// The same, with the fault of the other copy.
+  /// Reads the newest complete copy, as `read`, and reports the fault of the other copy.
   [[nodiscard]] std::optional<HeadReading> reading(std::span<const PublicKey> signers) const;
 
   /// Changes the record, and returns when it is on the disk. If there is no file, `change` gets an
-  /// empty record, whose `count` is 0, and the file is created. An exception of `change` is passed
-  /// on and leaves the file unchanged.
-  /// \param others  valid signers in addition to `signer`
+  /// empty record, whose `count` is 0, and the file is created. An exception of `change` leaves
+  /// the file unchanged and is rethrown.
+  /// \param signers  valid signers besides `signer`
   /// \throws StoreError if the file cannot be read, locked, written or synced; its last record then
   ///   remains
   void update(const Signer& signer, const HeadChange& change,
-              std::span<const PublicKey> others = {}) const;
+              std::span<const PublicKey> signers = {}) const;
 
  private:
   [[nodiscard]] bool overwrite(const Signer& signer, const HeadChange& change,
@@ -113,15 +113,14 @@ class HeadFile {
 };
 
 /// The head files of one database: `<database>.head` beside it and, if there is a second folder, a
-/// file of the same name there. Each has its own content, so that the other one reveals a file that
-/// was rolled back with the database.
+/// file of the same name there. If one is rolled back with the database, the other reveals it.
 class HeadFiles {
  public:
   /// \param signers  as HeadFile::read
-  /// \param also  the second folder, preferably on another disk; empty: none; nothing: the one that
-  ///   `<database>.head` names
+  /// \param also  the second folder, preferably on another disk; an empty path: none; nullopt: the
+  ///   one that `<database>.head` names
   /// \throws FileError if the second folder is missing, cannot be written, or is the database's
-  ///   own; as HeadFile::read if `also` is nothing
+  ///   own; as HeadFile::read if `also` is nullopt
   HeadFiles(const std::filesystem::path& database, std::vector<PublicKey> signers,
             std::optional<std::filesystem::path> also = {});
 
@@ -133,9 +132,9 @@ class HeadFiles {
   /// files, unless they were removed.
   /// \throws FileError as HeadFile::read
   [[nodiscard]] std::vector<HeadReading> read() const;
-  /// As HeadFile::update, for each file in turn. A missing second file is created with the record
-  /// of the first.
-  /// \throws StoreError the same; also if the second file belongs to another database
+  /// Updates each file in turn, as HeadFile::update. A missing second file is created with the
+  /// record of the first.
+  /// \throws StoreError as HeadFile::update, and if the second file belongs to another database
   void update(const Signer& signer, const HeadChange& change) const;
 
  private:
@@ -145,21 +144,21 @@ class HeadFiles {
 };
 
 /// A head file that a database has, or had.
-struct KnownHead {
+struct ExpectedHead {
   std::filesystem::path file;
-  std::optional<HeadReading> reading;  ///< nothing: the file does not exist
+  std::optional<HeadReading> reading;  ///< empty: the file does not exist
 };
 
-/// The head files beside a database or on record: first the one beside it, then those in the
-/// folders that the database and that file name. Empty if there are none.
+/// The head files that a database has or should have: first the one beside it, then one in each
+/// folder that the database or that file names.
 /// \throws FileError as HeadFile::read
-[[nodiscard]] std::vector<KnownHead> known_heads(const StudyStore& store,
-                                                 const std::filesystem::path& database);
+[[nodiscard]] std::vector<ExpectedHead> expected_heads(const StudyStore& store,
+                                                       const std::filesystem::path& database);
 
-/// Something that a head file records and the database lacks.
+/// Data that a head file records but the database lacks.
 struct Loss {
   int session = 0;           ///< 0: the file's chain, or the database as a whole
-  std::string what;          ///< a sentence for messages, without the database's name
+  std::string what;          ///< for messages, without the database's name
   std::int64_t answers = 0;  ///< missing acknowledged answers, if `what` is about them
 
   friend bool operator==(const Loss&, const Loss&) = default;
@@ -169,10 +168,10 @@ struct Loss {
 /// number of answers. It compares stored hashes; StudyStore::first_fault computes them.
 /// \return the file's chain first, then sessions by number; empty: nothing is missing
 /// \throws StoreError if the database cannot be read
-[[nodiscard]] std::vector<Loss> losses(const HeadRecord& known, const StudyStore& store);
+[[nodiscard]] std::vector<Loss> losses(const HeadRecord& head, const StudyStore& store);
 
-/// The first 16 digits of the file chain's hash in groups of four, to write down and compare: "0f3a
-/// 91c2 77de 4b08". `verify --head` takes them.
+/// The first 16 digits of the file chain's hash, to write down and pass to `verify --head`:
+/// "0f3a 91c2 77de 4b08".
 [[nodiscard]] std::string head_digits(const HeadRecord& record);
 
 }  // namespace touchtrial::record

@@ -5,10 +5,10 @@
 
 namespace touchtrial::record {
 
-/// The marks. The values are the codes on the serial line, and never change. None depends on what
-/// is presented or answered.
+/// The marks. The values are the codes on the serial line, and never change. None depends on the
+/// stimulus or the answer.
 enum class Mark : int {
-  session_begins = 1,  ///< or is resumed after the program ended
+  session_begins = 1,  ///< or is resumed by a new run of the program
   session_ends = 2,
   plane_on = 10,
   contact = 11,  ///< the stylus comes near the plane, see session::kLandingHeightMm
@@ -22,7 +22,7 @@ enum class Mark : int {
   stopped = 43,
   practised = 50,  ///< a practice presentation is answered
 };
-/// With hyphens, for instance "plane-on"; "unknown" for another code.
+/// The name with hyphens, for instance "plane-on"; "unknown" for another code.
 [[nodiscard]] std::string_view name_of(Mark mark) noexcept;
 
 }  // namespace touchtrial::record

@@ -1,5 +1,5 @@
-/// \file Opened events whose bodies stay in two parts: reading a study's answers opens every event,
-///   and joining all bodies would cost time without need.
+/// \file Opened events whose bodies stay in two parts. Reading a study's answers opens every event,
+///   and joining all bodies would take time without need.
 #pragma once
 
 #include "core/cipher.hpp"
@@ -24,7 +24,7 @@ class EventOpener {
  public:
   explicit EventOpener(const SecretKey& participant_key);
 
-  /// \param event  of the session, as it is stored
+  /// \param event  a stored event of the session
   /// \return nothing if the key is wrong, or the event was altered
   [[nodiscard]] std::optional<OpenedParts> operator()(const Event& event) const;
 
@@ -33,8 +33,9 @@ class EventOpener {
   Unsealer safety_;
 };
 
-/// As fold, with an event that was opened; a trace-stored event's body is read with from_parts.
-/// \param event  with its time and nothing sealed; its body does not count
+/// Does what `fold` does, with an event that was opened. The body of a trace-stored event can be
+/// read with from_parts.
+/// \param event  with its time and nothing sealed; its body is ignored
 /// \throws as fold
 void fold(DerivedRows& rows, const Event& event, const BodyParts& body);
 

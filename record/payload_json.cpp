@@ -14,35 +14,35 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::string compact(const Json& object) {
+std::string compact_text(const Json& object) {
   try {
     return object.dump();
   } catch (const Json::exception&) {
-    throw StoreError("a text to be stored is not UTF-8; type it again without special characters");
+    throw StoreError(
+        "a text is not UTF-8 and cannot be stored; type it again without special characters");
   }
 }
 
-/// Puts the members of a body into one JSON object. The limits that BodyReader checks are ignored
-/// here.
+/// Writes the members of a body into one JSON object, without checking limits.
 class BodyWriter final : public BodyIo {
  public:
-  Json object = Json::object();
+  Json json = Json::object();
 
  private:
-  Json& at(const Member& member) { return object[std::string(member.key)]; }
+  Json& at(const Member& member) { return json[std::string(member.key)]; }
 
-  bool has(const Member& /*member*/, bool there) override { return there; }
+  bool has(const Member& /*member*/, bool has_value) override { return has_value; }
   void text(const Member& member, std::string& value) override { at(member) = value; }
   void boolean(const Member& member, bool& value) override { at(member) = value; }
   void number(const Member& member, double& value) override {
     // JSON has no infinities.
     if (!std::isfinite(value)) {
       throw StoreError("/" + std::string(member.key) +
-                       " to be stored is not a finite number; check the device");
+                       " is not a finite number and cannot be stored; check the device");
     }
     at(member) = value;
   }
-  void whole(const Member& member, std::int64_t& value, std::int64_t /*max*/) override {
+  void integer(const Member& member, std::int64_t& value, std::int64_t /*max*/) override {
     at(member) = value;
   }
   void bytes(const Member& member, std::span<std::uint8_t> value) override {
@@ -56,40 +56,40 @@ class BodyWriter final : public BodyIo {
     at(member) = std::vector<double>(value.begin(), value.end());
   }
   void numbers(const Member& member, std::vector<double>& value) override { at(member) = value; }
-  void wholes(const Member& member, std::vector<std::int64_t>& value,
-              std::int64_t /*max*/) override {
+  void integers(const Member& member, std::vector<std::int64_t>& value,
+                std::int64_t /*max*/) override {
     at(member) = value;
   }
-  void within(const Member& member, const std::function<void(BodyIo&)>& describe) override {
+  void object(const Member& member, const std::function<void(BodyIo&)>& describe) override {
     BodyWriter inner;
     describe(inner);
-    at(member) = std::move(inner.object);
+    at(member) = std::move(inner.json);
   }
 };
 
-/// Reads the members of a body from one JSON object, or from two: those of the second override.
+/// Reads the members of a body from one JSON object, or from two.
 class BodyReader final : public BodyIo {
  public:
   /// \throws StoreError if a text is not one JSON object
-  explicit BodyReader(const BodyParts& parts) : first_(parsed(parts.clear)) {
-    if (!parts.hidden.empty()) second_ = parsed(parts.hidden);
+  explicit BodyReader(const BodyParts& parts) : first_(parse_object(parts.clear)) {
+    if (!parts.hidden.empty()) second_ = parse_object(parts.hidden);
   }
 
   [[nodiscard]] bool reads() const override { return true; }
 
  private:
-  /// An object within another one.
+  /// Reads a nested object.
   BodyReader(const BodyReader& outer, std::string_view key, const Json& object)
-      : first_(object), place_(outer.place_ + "/" + std::string(key)) {}
+      : first_(object), pointer_(outer.pointer_ + "/" + std::string(key)) {}
 
-  [[nodiscard]] static Json parsed(std::string_view text) {
+  [[nodiscard]] static Json parse_object(std::string_view text) {
     Json object = Json::parse(text, nullptr, /*allow_exceptions=*/false);
     if (!object.is_object()) throw StoreError("the body is not a JSON object");
     return object;
   }
 
-  [[noreturn]] void refuse(const Member& member, const std::string& why) const {
-    throw StoreError(place_ + "/" + std::string(member.key) + " " + why);
+  [[noreturn]] void refuse(const Member& member, const std::string& reason) const {
+    throw StoreError(pointer_ + "/" + std::string(member.key) + " " + reason);
   }
   /// \return null if there is none
   [[nodiscard]] const Json* find(const Member& member) const {
@@ -114,11 +114,11 @@ class BodyReader final : public BodyIo {
     return found;
   }
   [[nodiscard]] double number_in(const Member& member, const Json& item) const {
-    if (!item.is_number()) refuse(member, "contains something other than numbers");
+    if (!item.is_number()) refuse(member, "contains an item that is not a number");
     return item.get<double>();
   }
 
-  bool has(const Member& member, bool /*there*/) override { return find(member) != nullptr; }
+  bool has(const Member& member, bool /*has_value*/) override { return find(member) != nullptr; }
   void text(const Member& member, std::string& value) override { value = text_at(member); }
   void boolean(const Member& member, bool& value) override {
     const Json& found = at(member);
@@ -130,7 +130,7 @@ class BodyReader final : public BodyIo {
     if (!found.is_number()) refuse(member, "is not a number");
     value = found.get<double>();
   }
-  void whole(const Member& member, std::int64_t& value, std::int64_t max) override {
+  void integer(const Member& member, std::int64_t& value, std::int64_t max) override {
     const Json& found = at(member);
     if (!found.is_number_integer()) refuse(member, "is not a whole number");
     value = found.get<std::int64_t>();
@@ -149,7 +149,7 @@ class BodyReader final : public BodyIo {
   void word(const Member& member, std::size_t& value,
             std::span<const std::string_view> words) override {
     const auto found = std::ranges::find(words, text_at(member));
-    if (found == words.end()) refuse(member, "is not one of its words");
+    if (found == words.end()) refuse(member, "is not an allowed word");
     value = static_cast<std::size_t>(found - words.begin());
   }
   void numbers(const Member& member, std::span<double> value) override {
@@ -163,16 +163,16 @@ class BodyReader final : public BodyIo {
   void numbers(const Member& member, std::vector<double>& value) override {
     for (const Json& item : list_at(member)) value.push_back(number_in(member, item));
   }
-  void wholes(const Member& member, std::vector<std::int64_t>& value, std::int64_t max) override {
+  void integers(const Member& member, std::vector<std::int64_t>& value, std::int64_t max) override {
     for (const Json& item : list_at(member)) {
       if (!item.is_number_unsigned()) {
-        refuse(member, "contains something other than whole numbers from 0");
+        refuse(member, "contains an item that is not a whole number from 0");
       }
       value.push_back(item.get<std::int64_t>());
       if (value.back() < member.note.min || value.back() > max) refuse(member, "is out of range");
     }
   }
-  void within(const Member& member, const std::function<void(BodyIo&)>& describe) override {
+  void object(const Member& member, const std::function<void(BodyIo&)>& describe) override {
     const Json& found = at(member);
     if (!found.is_object()) refuse(member, "is not an object");
     BodyReader inner(*this, member.key, found);
@@ -181,10 +181,10 @@ class BodyReader final : public BodyIo {
 
   Json first_ = Json::object();
   Json second_ = Json::object();  ///< its members override those of the first
-  std::string place_;             ///< JSON pointer
+  std::string pointer_;           ///< JSON pointer
 };
 
-/// The one member of the bodies about a session.
+/// The member that all bodies about a session have.
 struct SessionNumber {
   int session = 0;
 
@@ -193,10 +193,10 @@ struct SessionNumber {
 
 }  // namespace
 
-std::string written_body(const DescribeMembers& describe) {
+std::string write_body(const DescribeMembers& describe) {
   BodyWriter writer;
   describe(writer);
-  return compact(writer.object);
+  return compact_text(writer.json);
 }
 
 void read_body(const BodyParts& parts, const DescribeMembers& describe) {
@@ -216,7 +216,7 @@ TrialMeasures measures_from_json(const std::string& text) try {
   return from_json<TrialMeasures>(text);
 } catch (const StoreError& error) {
   throw StoreError(std::string("sealed measures of a trial: ") + error.what() +
-                   "; the database is damaged or of another version, restore it from a backup");
+                   "; the database is damaged or has another version, restore it from a backup");
 }
 
 int session_from_json(const std::string& text) {
@@ -228,7 +228,7 @@ std::string renumbered(const std::string& body, int session) {
   static_cast<void>(session_from_json(body));
   Json object = Json::parse(body);
   object["session"] = session;
-  return compact(object);
+  return compact_text(object);
 }
 
 std::string renumbered_opening(const std::string& body, int session, int station) {
@@ -237,7 +237,7 @@ std::string renumbered_opening(const std::string& body, int session, int station
   object["session"] = session;
   object["own_session"] = own_session;
   object["station"] = station;
-  return compact(object);
+  return compact_text(object);
 }
 
 }  // namespace touchtrial::record

@@ -18,14 +18,14 @@ namespace touchtrial::record {
 using DescribeMembers = std::function<void(BodyIo& io)>;
 
 /// \throws StoreError if a text is not UTF-8 or a number is not finite
-[[nodiscard]] std::string written_body(const DescribeMembers& describe);
+[[nodiscard]] std::string write_body(const DescribeMembers& describe);
 /// \throws StoreError, naming the key, if the parts are not such a body
 void read_body(const BodyParts& parts, const DescribeMembers& describe);
 
-/// \throws as written_body
+/// \throws as write_body
 template <typename Body>
 [[nodiscard]] std::string to_json(Body body) {
-  return written_body([&](BodyIo& io) { body.describe(io); });
+  return write_body([&](BodyIo& io) { body.describe(io); });
 }
 
 /// \throws as read_body
@@ -52,7 +52,7 @@ template <typename Body>
 /// \throws EventFault, naming the event, if it does not
 void require_members(const Event& event);
 
-/// The body of a station's event as a collected study holds it: `session` is the session's number
+/// The body of a station's event for a collected study: `session` becomes the session's number
 /// there; everything else is unchanged.
 /// \throws StoreError if the text is not a body about a session
 [[nodiscard]] std::string renumbered(const std::string& body, int session);

@@ -10,15 +10,16 @@
 namespace touchtrial::record {
 namespace {
 
-/// A box reveals the length of its text only in steps of this many bytes.
-constexpr std::size_t kStep = 256;
+/// The padding of texts, bytes: a box reveals only the multiple.
+constexpr std::size_t kTextPadding = 256;
 
 /// A remark without a code is not a deviation. Everything else is part of the safety record.
 bool is_plain_remark(EventKind kind, const std::string& body) {
   return kind == EventKind::participant_noted && from_json<NoteBody>(body).code.empty();
 }
 
-/// Collecting renumbers chains and sessions but does not change these members.
+/// The context that binds a box to its event. It contains only members that collecting does not
+/// change.
 std::string context_of(EventKind kind, std::chrono::nanoseconds at, int own_session) {
   return "text|" + std::to_string(own_session) + "|" + std::string(name_of(kind)) + "|" +
          std::to_string(at.count());
@@ -27,19 +28,19 @@ std::string context_of(EventKind kind, std::chrono::nanoseconds at, int own_sess
 }  // namespace
 
 PersonText sealed_person_text(EventKind kind, std::chrono::nanoseconds at, const std::string& body,
-                              const SessionOpenedBody& opened) {
+                              const SessionOpenedBody& opening) {
   BodyParts parts = split_body(kind, body);
-  parts.hidden.resize((parts.hidden.size() / kStep + 1) * kStep,
+  parts.hidden.resize((parts.hidden.size() / kTextPadding + 1) * kTextPadding,
                       ' ');  // trailing blanks are valid JSON
-  const int own_session = opened.own_session > 0 ? opened.own_session : opened.session;
+  const int own_session = opening.own_session > 0 ? opening.own_session : opening.session;
   SystemEntropy entropy;
   return {std::move(parts.clear),
-          seal_box(is_plain_remark(kind, body) ? opened.remarks : opened.reasons,
+          seal_box(is_plain_remark(kind, body) ? opening.remarks : opening.reasons,
                    context_of(kind, at, own_session), bytes_of(parts.hidden),
                    entropy.secret("text about a person"))};
 }
 
-const std::optional<SecretKey>& opener_of(const Event& event, const PersonKeys& keys) {
+const std::optional<SecretKey>& opening_key(const Event& event, const PersonKeys& keys) {
   if (event.session <= 0) {
     return is_plain_remark(event.kind, event.body) ? keys.participant : keys.safety;
   }
@@ -49,14 +50,14 @@ const std::optional<SecretKey>& opener_of(const Event& event, const PersonKeys& 
 std::optional<Event> opened_person_text(const Event& event, int own_session,
                                         const PersonKeys& keys) {
   if (event.sealed.empty()) return event;
-  const std::optional<SecretKey>& key = opener_of(event, keys);
+  const std::optional<SecretKey>& key = opening_key(event, keys);
   if (!key) return std::nullopt;
-  const std::optional<Bytes> hidden =
+  const std::optional<Bytes> text =
       open_box(is_plain_remark(event.kind, event.body) ? remarks_box(*key) : reasons_box(*key),
                context_of(event.kind, event.at, own_session), event.sealed);
-  if (!hidden) return std::nullopt;
+  if (!text) return std::nullopt;
   Event opened = event;
-  opened.body = joined_body({event.body, text_of(ByteView(*hidden))});
+  opened.body = join_body({event.body, text_of(ByteView(*text))});
   opened.sealed.clear();
   return opened;
 }

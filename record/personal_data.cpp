@@ -21,8 +21,9 @@ constexpr int kPersonalApplicationId = 0x54545250;  // "TTRP"
 constexpr int kPersonalVersion = 2;
 constexpr int kPersonalBusyTimeoutMs = 2000;
 
-[[noreturn]] void refuse_personal_data(const std::filesystem::path& path, const std::string& why) {
-  throw StoreError(one_line(path.string() + ": " + why));
+[[noreturn]] void refuse_personal_data(const std::filesystem::path& path,
+                                       const std::string& reason) {
+  throw StoreError(one_line(path.string() + ": " + reason));
 }
 
 /// Creates the file with its final permissions, so that others cannot read it even for a moment.
@@ -32,8 +33,8 @@ void make_private(const std::filesystem::path& path) {
   if (file >= 0) {
     ::close(file);
   } else if (errno != EEXIST) {
-    refuse_personal_data(path, std::string("cannot be made (") + std::strerror(errno) +
-                                   "); check that its folder exists and may be written");
+    refuse_personal_data(path, std::string("cannot be created (") + std::strerror(errno) +
+                                   "); check that its folder exists and is writable");
   }
 }
 
@@ -44,12 +45,12 @@ void set_up(SQLite::Database& connection, const std::filesystem::path& path) {
   const int version = connection.execAndGet("PRAGMA user_version").getInt();
   if (id == kPersonalApplicationId && version == kPersonalVersion) return;
   if (id == kPersonalApplicationId) {
-    refuse_personal_data(path, "has personal data of version " + std::to_string(version) +
+    refuse_personal_data(path, "contains personal data of version " + std::to_string(version) +
                                    ", not " + std::to_string(kPersonalVersion) +
                                    "; use the program that wrote it");
   }
   if (id != 0 || connection.execAndGet("SELECT count(*) FROM sqlite_schema").getInt() != 0) {
-    refuse_personal_data(path, "is not a personal-data file of Touchtrial; move it away");
+    refuse_personal_data(path, "is not one of Touchtrial's files of personal data; move it away");
   }
   SQLite::Transaction transaction(connection);
   connection.exec(
@@ -74,7 +75,7 @@ PersonalRecord record_in(SQLite::Statement& row) {
 
 /// Calls `work`; errors of SQLite are rethrown as StoreError with file and remedy.
 template <typename Work>
-auto translated(const std::filesystem::path& path, Work&& work) {
+auto with_file_errors(const std::filesystem::path& path, Work&& work) {
   try {
     return work();
   } catch (const SQLite::Exception& error) {
@@ -87,7 +88,7 @@ auto translated(const std::filesystem::path& path, Work&& work) {
 }  // namespace
 
 std::filesystem::path personal_data_path(const std::filesystem::path& database) {
-  return beside_database(database, ".personal");
+  return database_companion(database, ".personal");
 }
 
 struct PersonalData::Impl {
@@ -104,14 +105,14 @@ struct PersonalData::Impl {
 PersonalData::PersonalData(const std::filesystem::path& path) {
   make_private(path);
   require_owner_only(path);
-  impl_ = translated(path, [&] { return std::make_unique<Impl>(path); });
+  impl_ = with_file_errors(path, [&] { return std::make_unique<Impl>(path); });
 }
 PersonalData::~PersonalData() = default;
 PersonalData::PersonalData(PersonalData&&) noexcept = default;
 PersonalData& PersonalData::operator=(PersonalData&&) noexcept = default;
 
 void PersonalData::put(const PersonalRecord& record) {
-  translated(impl_->path, [&] {
+  with_file_errors(impl_->path, [&] {
     SQLite::Statement query(
         impl_->connection,
         "INSERT INTO people VALUES(?1, (SELECT coalesce(max(number), 0) + 1 FROM people WHERE "
@@ -139,7 +140,7 @@ std::optional<PersonalRecord> PersonalData::find(const std::string& participant)
 }
 
 std::vector<PersonalRecord> PersonalData::all() const {
-  return translated(impl_->path, [&] {
+  return with_file_errors(impl_->path, [&] {
     SQLite::Statement query(impl_->connection, "SELECT * FROM people ORDER BY participant, number");
     std::vector<PersonalRecord> records;
     while (query.executeStep()) records.push_back(record_in(query));
@@ -148,7 +149,7 @@ std::vector<PersonalRecord> PersonalData::all() const {
 }
 
 bool PersonalData::remove(const std::string& participant) {
-  return translated(impl_->path, [&] {
+  return with_file_errors(impl_->path, [&] {
     SQLite::Statement query(impl_->connection, "DELETE FROM people WHERE participant = ?");
     query.bind(1, participant);
     return query.exec() > 0;

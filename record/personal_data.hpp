@@ -1,5 +1,5 @@
 /// \file The participants' identities and consents, in a separate file beside the database. Exports
-/// take the versions of consent forms from it, and the rest for one person alone. Format:
+/// contain only the versions of consent forms, except the export for one person. Format:
 /// docs/data-dictionary.md, "Personal data".
 #pragma once
 
@@ -11,14 +11,14 @@
 
 namespace touchtrial::record {
 
-/// One consent, and the participant's details at that time.
+/// One consent, and the details that the participant gave with it.
 struct PersonalRecord {
   std::string participant;
-  std::string consent_version;  ///< version of the form that was signed
+  std::string consent_version;  ///< version of the signed form
   std::string consented_utc{};  ///< ISO 8601
-  std::optional<int> age{};     ///< years; empty: not given then
-  std::string gender{};         ///< in their own words; empty: not given then
-  std::string contact{};        ///< empty: not given then
+  std::optional<int> age{};     ///< years; empty: not stated
+  std::string gender{};         ///< in their own words; empty: not stated
+  std::string contact{};        ///< empty: not stated
 
   friend bool operator==(const PersonalRecord&, const PersonalRecord&) = default;
 };
@@ -27,13 +27,12 @@ struct PersonalRecord {
 [[nodiscard]] std::filesystem::path personal_data_path(const std::filesystem::path& database);
 
 /// An SQLite file that only its owner may read, from its creation on. Deleted content is
-/// overwritten. Not to be shared between threads.
+/// overwritten. Not thread-safe.
 class PersonalData {
  public:
-  /// Opens it, or makes an empty one.
+  /// Opens the file, or creates an empty one.
   /// \throws FileError, with the remedy, if others may read it
-  /// \throws StoreError, with the remedy, if it cannot be made, or is a file of a newer version or
-  ///   another kind
+  /// \throws StoreError, with the remedy, if it cannot be created, or has another version or kind
   explicit PersonalData(const std::filesystem::path& path);
   ~PersonalData();
   PersonalData(PersonalData&&) noexcept;
@@ -44,7 +43,7 @@ class PersonalData {
   void put(const PersonalRecord& record);
   /// The participant's last consent, with the latest age, gender and contact.
   [[nodiscard]] std::optional<PersonalRecord> find(const std::string& participant) const;
-  /// Every consent, by participant, each participant's in the order in which they were recorded.
+  /// Every consent, by participant and in the order of recording.
   [[nodiscard]] std::vector<PersonalRecord> all() const;
   /// Removes every consent of a participant.
   /// \return whether the participant had any

@@ -14,20 +14,21 @@ constexpr const char* kEventsSql =
     "SELECT session, sequence, kind, at_ns, body, sealed, previous, hash, signature, own_session "
     "FROM events ";
 
-/// \throws EventFault if no session of a station can have the number
+/// \throws EventFault if the number is impossible for a session
 std::optional<int> renumbered_from(const Query& row, int column) {
   if (row.is_null(column)) return std::nullopt;
   const std::int64_t number = row.integer(column);
   if (number < 0 || number > std::numeric_limits<int>::max()) {
-    throw EventFault(row.integer(0), row.integer(1), "no session of a station has this number");
+    throw EventFault(row.integer(0), row.integer(1),
+                     "its session number at the station is impossible");
   }
   return static_cast<int>(number);
 }
 
-/// \throws EventFault if no chain can have the number
+/// \throws EventFault if the number is impossible for a chain
 int session_number(std::int64_t session, std::int64_t sequence) {
   if (session < std::numeric_limits<int>::min() || session > std::numeric_limits<int>::max()) {
-    throw EventFault(session, sequence, "no session has this number");
+    throw EventFault(session, sequence, "its session number is impossible");
   }
   return static_cast<int>(session);
 }
@@ -49,8 +50,8 @@ Event event_of_row(const Query& row) {
           .renumbered_from = renumbered_from(row, 9)};
 }
 
-/// " AND kind IN ('opened','closed')"; empty: any kind will do.
-std::string is_one_of(std::span<const EventKind> kinds) {
+/// The condition on kinds, for instance " AND kind IN ('opened','closed')"; empty for all kinds.
+std::string kind_filter_sql(std::span<const EventKind> kinds) {
   if (kinds.empty()) return {};
   std::string names;
   for (const EventKind kind : kinds) {
@@ -106,16 +107,17 @@ WrappedKeys read_keys(const Database& database, int session) {
           .safety = read("SELECT wrapped FROM safety_keys WHERE session = ?")};
 }
 
-void insert_station_key(const Database& database, int session, const Bytes& kept) {
+void insert_station_key(const Database& database, int session, const Bytes& stored_key) {
   database.query("INSERT INTO station_keys(session, kept) VALUES(?,?)")
       .bind(session)
-      .bind(kept)
+      .bind(stored_key)
       .run();
 }
 
 void for_each_event(const Database& database, const EventFilter& filter,
                     const EventVisitor& visit) {
-  const std::string sql = kEventsSql + ("WHERE session BETWEEN ? AND ?" + is_one_of(filter.kinds)) +
+  const std::string sql = kEventsSql +
+                          ("WHERE session BETWEEN ? AND ?" + kind_filter_sql(filter.kinds)) +
                           " ORDER BY session, sequence";
   Query query = database.separate_query(sql.c_str());
   query.bind(filter.session.value_or(kLowest)).bind(filter.session.value_or(kHighest));
@@ -140,7 +142,8 @@ std::vector<Event> read_events(const Database& database, int session, std::excep
 }
 
 std::optional<Event> read_event(const Database& database, int session, std::int64_t sequence) {
-  // By its whole key: the range query of for_each_event would scan all events of the session.
+  // Reads by primary key, because the range query of for_each_event would scan all events of the
+  // session.
   static const std::string sql = std::string(kEventsSql) + "WHERE session = ? AND sequence = ?";
   Query query = database.query(sql.c_str());
   query.bind(session).bind(sequence);
@@ -149,7 +152,7 @@ std::optional<Event> read_event(const Database& database, int session, std::int6
 }
 
 std::vector<std::int64_t> sessions_with_events(const Database& database) {
-  // From one session's first event to the next one's: DISTINCT would read every event.
+  // Jumps from session to session, because DISTINCT would read every event.
   std::vector<std::int64_t> sessions;
   const auto add_from = [&](std::int64_t lowest) {
     Query query = database.query("SELECT min(session) FROM events WHERE session >= ?");
@@ -158,7 +161,7 @@ std::vector<std::int64_t> sessions_with_events(const Database& database) {
     sessions.push_back(query.integer(0));
     return sessions.back() < kHighest;
   };
-  for (bool more = add_from(kLowest); more;) more = add_from(sessions.back() + 1);
+  for (bool has_more = add_from(kLowest); has_more;) has_more = add_from(sessions.back() + 1);
   std::erase(sessions, 0);
   return sessions;
 }
@@ -175,7 +178,7 @@ std::map<int, SessionRow> read_sessions(const Database& database) {
   for (const std::int64_t number : sessions_with_events(database)) {
     if (number < 0) continue;
     const int session = session_number(number, 0);
-    // Those between opening and end change trials alone.
+    // Events between opening and end change only trials.
     if (const auto first = read_event(database, session, 0)) fold(rows, *first);
     const auto last = read_last_event(database, session);
     if (last && last->kind == EventKind::closed) fold(rows, *last);
@@ -185,7 +188,7 @@ std::map<int, SessionRow> read_sessions(const Database& database) {
 }
 
 std::vector<TrialRow> read_trials(const Database& database) {
-  // Reads only kinds and bodies, not hashes and sealed parts, which are most of a row.
+  // The query omits hashes and sealed parts, which are most of a row.
   Query query = database.query(
       "SELECT session, sequence, kind, body FROM events WHERE session > 0 AND kind IN ('opened', "
       "'presented', 'answered', 'interrupted', 'timed-out', 'trace-stored', 'explored-again', "

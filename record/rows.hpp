@@ -20,9 +20,9 @@ using EventVisitor = std::function<void(const Event&)>;
 
 void insert_event(const Database& database, const Event& event);
 void insert_trace(const Database& database, const SealedTrace& trace);
-/// Inserts the existing ones of the two keys.
+/// Inserts the two keys, except a missing one.
 void insert_keys(const Database& database, int session, const WrappedKeys& keys);
-void insert_station_key(const Database& database, int session, const Bytes& kept);
+void insert_station_key(const Database& database, int session, const Bytes& stored_key);
 
 [[nodiscard]] WrappedKeys read_keys(const Database& database, int session);
 
@@ -32,10 +32,9 @@ struct EventFilter {
   std::span<const EventKind> kinds{};  ///< any of these; empty: all
 };
 
-/// Calls `visit` for the events that the filter names, by session and sequence. `visit` may use the
-/// database.
-/// \throws EventFault if a row is not a valid event: unknown kind, impossible number, hash of
-///   another length
+/// Calls `visit` for the selected events, by session and sequence. `visit` may use the database.
+/// \throws EventFault if a row is not a valid event: unknown kind, impossible number, wrong length
+///   of a hash
 void for_each_event(const Database& database, const EventFilter& filter, const EventVisitor& visit);
 /// The same for all events of one chain.
 void for_each_event(const Database& database, std::int64_t session, const EventVisitor& visit);
@@ -44,22 +43,22 @@ void for_each_event(const Database& database, std::int64_t session, const EventV
 [[nodiscard]] std::vector<Event> read_events(const Database& database, int session,
                                              std::exception_ptr& fault);
 /// One event, if it exists.
-/// \throws the same
+/// \throws as for_each_event
 [[nodiscard]] std::optional<Event> read_event(const Database& database, int session,
                                               std::int64_t sequence);
 
 /// The last event of one chain, if any; earlier events are not read.
-/// \throws the same
+/// \throws as for_each_event
 [[nodiscard]] std::optional<Event> read_last_event(const Database& database, int session);
 
 /// The number of every session that has events, except 0, ascending.
 [[nodiscard]] std::vector<std::int64_t> sessions_with_events(const Database& database);
 
-/// The row of each session by its events and the file's chain, by number.
-/// \throws EventFault if an event cannot be read, or cannot follow those before
+/// Every session's row, from its events and the file's chain; by number.
+/// \throws EventFault if an event cannot be read, or cannot follow the earlier ones
 [[nodiscard]] std::map<int, SessionRow> read_sessions(const Database& database);
-/// The row of each trial, by session and trial.
-/// \throws the same
+/// Every trial's row, by session and trial.
+/// \throws as read_sessions
 [[nodiscard]] std::vector<TrialRow> read_trials(const Database& database);
 
 }  // namespace touchtrial::record

@@ -11,7 +11,7 @@
 namespace touchtrial::record {
 namespace {
 
-/// WITHOUT ROWID for small rows with keys of several columns.
+// WITHOUT ROWID suits small rows with keys of several columns.
 constexpr const char* kTablesSql = R"sql(
 CREATE TABLE events(
   session INTEGER NOT NULL,
@@ -53,7 +53,7 @@ std::string schema_sql() {
   return kTablesSql + append_only_sql("events", "sequence") + append_only_sql("traces", "trial");
 }
 
-/// By type and name: an object's table, and its SQL without blanks and line ends.
+/// Maps the type and name of each object to its table and SQL, without blanks and line ends.
 using SchemaObjects = std::map<std::pair<std::string, std::string>, std::string>;
 
 SchemaObjects objects_of(SQLite::Database& connection) {
@@ -68,8 +68,8 @@ SchemaObjects objects_of(SQLite::Database& connection) {
   return objects;
 }
 
-/// SQLite's internal tables, which a viewer's ANALYZE or AUTOINCREMENT leaves behind. Its
-/// statistics sample only the keys of rows, which are in clear.
+/// SQLite's internal tables, which a viewer's ANALYZE or AUTOINCREMENT leaves behind. They sample
+/// only the keys of rows, which are unencrypted.
 const SchemaObjects& harmless_objects() {
   static const auto table = [](std::string name, const std::string& columns) {
     std::string sql = name + " CREATETABLE" + name + "(" + columns + ")";
@@ -112,7 +112,8 @@ std::string identifier(const std::string& name) {
   return quoted + '"';
 }
 
-/// A quoted shell word, on one line: '...' or, with unprintable bytes, $'...' of bash and zsh.
+/// Quotes a word for the shell, on one line: as '...' or, with unprintable bytes, as $'...' of bash
+/// and zsh.
 std::string shell_word(const std::string& text) {
   if (one_line(text) == text) {
     std::string word = "'";
@@ -128,7 +129,7 @@ std::string shell_word(const std::string& text) {
       continue;
     }
     word += '\\';
-    for (const int place : {64, 8, 1}) word += static_cast<char>('0' + byte / place % 8);
+    for (const int power : {64, 8, 1}) word += static_cast<char>('0' + byte / power % 8);
   }
   return word + '\'';
 }
@@ -138,16 +139,16 @@ std::string shell_word(const std::string& text) {
 std::string drop_command(const std::filesystem::path& database, const std::string& statements) {
   // sqlite3 would parse a name that begins like this as an option or an address.
   const std::string path = database.string();
-  const bool is_name = path.starts_with('-') || path.starts_with("file:");
-  return "sqlite3 " + shell_word(is_name ? "./" + path : path) + ' ' + shell_word(statements);
+  const bool needs_prefix = path.starts_with('-') || path.starts_with("file:");
+  return "sqlite3 " + shell_word(needs_prefix ? "./" + path : path) + ' ' + shell_word(statements);
 }
 
-/// Drops foreign objects: first those that depend on tables.
-/// \param alien  objects; internal indexes go with their tables
-std::string drop_statements(const SchemaObjects& alien) {
+/// Drops foreign objects; those that depend on tables come first. Tables take their internal
+/// indexes with them.
+std::string drop_statements(const SchemaObjects& foreign) {
   std::string sql;
   for (const char* const type : {"trigger", "view", "index", "table"}) {
-    for (const auto& [object, made_by] : alien) {
+    for (const auto& [object, definition] : foreign) {
       if (object.first != type || object.second.starts_with("sqlite_autoindex_")) continue;
       std::string keyword = type;
       std::ranges::transform(keyword, keyword.begin(), [](char c) { return std::toupper(c); });
@@ -157,9 +158,9 @@ std::string drop_statements(const SchemaObjects& alien) {
   return sql;
 }
 
-std::string drop_columns(const std::string& table, Columns found, const Columns& expected) {
+std::string drop_columns(const std::string& table, Columns columns, const Columns& expected) {
   std::string sql;
-  for (const std::string& column : found) {
+  for (const std::string& column : columns) {
     if (std::ranges::find(expected, column) != expected.end()) continue;
     sql += "ALTER TABLE " + table + " DROP COLUMN " + identifier(column) + "; ";
   }
@@ -177,34 +178,36 @@ void make_tables(const Database& database) {
 
 std::optional<SchemaFault> schema_fault(const Database& database) {
   static const Schema expected = expected_schema();
-  SchemaObjects alien = objects_of(database.connection());
-  std::string what;
-  std::string columns;
-  for (const auto& [object, made_by] : expected.objects) {
-    const auto same = alien.extract(object);
+  SchemaObjects foreign = objects_of(database.connection());
+  std::string difference;
+  std::string column_drops;
+  for (const auto& [object, definition] : expected.objects) {
+    const auto actual = foreign.extract(object);
     const std::string name = object.first + " " + object.second;
-    if (same.empty()) return SchemaFault{name + " is missing from the schema", ""};
-    if (same.mapped() == made_by) continue;
-    if (what.empty()) what = name + " is not as its schema has it";
-    const auto own = expected.columns.find(object.second);
-    const std::string more =
-        own == expected.columns.end()
+    if (actual.empty()) return SchemaFault{name + " is missing from the schema", ""};
+    if (actual.mapped() == definition) continue;
+    if (difference.empty()) difference = name + " differs from the schema";
+    const auto table = expected.columns.find(object.second);
+    const std::string drops =
+        table == expected.columns.end()
             ? ""
-            : drop_columns(own->first, columns_of(database.connection(), own->first), own->second);
-    if (more.empty()) return SchemaFault{what, ""};
-    columns += more;
+            : drop_columns(table->first, columns_of(database.connection(), table->first),
+                           table->second);
+    if (drops.empty()) return SchemaFault{difference, ""};
+    column_drops += drops;
   }
-  std::erase_if(alien, [](const auto& object) {
+  std::erase_if(foreign, [](const auto& object) {
     const auto harmless = harmless_objects().find(object.first);
     return harmless != harmless_objects().end() && harmless->second == object.second;
   });
-  const std::string statements = drop_statements(alien) + columns;
-  if (what.empty() && !alien.empty()) {
-    const auto& [type, name] = alien.begin()->first;
-    what = one_line(type + " " + name) + " does not belong to the schema";
+  const std::string statements = drop_statements(foreign) + column_drops;
+  if (difference.empty() && !foreign.empty()) {
+    const auto& [type, name] = foreign.begin()->first;
+    difference = one_line(type + " " + name) + " does not belong to the schema";
   }
-  if (what.empty()) return std::nullopt;
-  return SchemaFault{what, statements.empty() ? "" : drop_command(database.path(), statements)};
+  if (difference.empty()) return std::nullopt;
+  return SchemaFault{difference,
+                     statements.empty() ? "" : drop_command(database.path(), statements)};
 }
 
 }  // namespace touchtrial::record

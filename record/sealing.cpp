@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kWrapPadding = 64;
 
-SecretKey keeping_key(const SecretKey& station_secret) {
+SecretKey station_copy_key(const SecretKey& station_secret) {
   return derive_key(station_secret, "participant keys");
 }
 
@@ -53,7 +53,7 @@ std::string trace_context(int own_session, int trial) {
 
 constexpr std::size_t kTimeSize = 8;
 constexpr std::size_t kLengthSize = 4;
-constexpr std::size_t kBeforeTexts = kTimeSize + kLengthSize;
+constexpr std::size_t kPrefixSize = kTimeSize + kLengthSize;
 
 void put_number(Bytes& bytes, std::uint64_t number, std::size_t size) {
   for (std::size_t i = 0; i < size; ++i) {
@@ -61,13 +61,14 @@ void put_number(Bytes& bytes, std::uint64_t number, std::size_t size) {
   }
 }
 
-std::uint64_t number_in(ByteView bytes) {
+std::uint64_t read_number(ByteView bytes) {
   std::uint64_t number = 0;
   for (std::size_t i = bytes.size(); i > 0; --i) number = (number << 8U) | bytes[i - 1];
   return number;
 }
 
-Bytes wrapped_for(const PublicKey& investigator, const std::string& context, const SecretKey& key) {
+Bytes wrap_key_for(const PublicKey& investigator, const std::string& context,
+                   const SecretKey& key) {
   return seal_box(investigator, context, key,
                   derive_key(key, "wrapping for " + to_hex(investigator)));
 }
@@ -77,27 +78,27 @@ SecretKey key_of_kind(EventKind kind, const SecretKey& participant_key) {
   return is_safety_record(kind) ? safety_key(participant_key) : participant_key;
 }
 
-/// \param key  that the event was sealed with
-std::optional<OpenedParts> parts_opened_with(const Event& event, const Unsealer& key) {
+/// \param key  the key that sealed the event
+std::optional<OpenedParts> open_parts(const Event& event, const Unsealer& key) {
   const std::optional<Bytes> plain = key(event_context(event), event.sealed, kSealedUnit);
-  if (!plain || plain->size() < kBeforeTexts) return std::nullopt;
+  if (!plain || plain->size() < kPrefixSize) return std::nullopt;
   const ByteView bytes(*plain);
-  const std::uint64_t length = number_in(bytes.subspan(kTimeSize, kLengthSize));
-  const ByteView texts = bytes.subspan(kBeforeTexts);
+  const std::uint64_t length = read_number(bytes.subspan(kTimeSize, kLengthSize));
+  const ByteView texts = bytes.subspan(kPrefixSize);
   if (length > texts.size()) return std::nullopt;
-  return OpenedParts{
-      .at = std::chrono::nanoseconds(static_cast<std::int64_t>(number_in(bytes.first(kTimeSize)))),
-      .body = {event.body, text_of(texts.first(length))},
-      .secret = text_of(texts.subspan(length))};
+  return OpenedParts{.at = std::chrono::nanoseconds(
+                         static_cast<std::int64_t>(read_number(bytes.first(kTimeSize)))),
+                     .body = {event.body, text_of(texts.first(length))},
+                     .secret = text_of(texts.subspan(length))};
 }
 
-/// \param key  that the event was sealed with
-std::optional<OpenedEvent> opened_with(const Event& event, const SecretKey& key) {
-  std::optional<OpenedParts> parts = parts_opened_with(event, Unsealer(key));
+/// \param key  the key that sealed the event
+std::optional<OpenedEvent> open_event(const Event& event, const SecretKey& key) {
+  std::optional<OpenedParts> parts = open_parts(event, Unsealer(key));
   if (!parts) return std::nullopt;
   OpenedEvent opened{.event = event, .secret = std::move(parts->secret)};
   opened.event.at = parts->at;
-  opened.event.body = joined_body(parts->body);
+  opened.event.body = join_body(parts->body);
   opened.event.sealed.clear();
   return opened;
 }
@@ -109,15 +110,15 @@ SecretKey safety_key(const SecretKey& participant_key) {
 }
 
 bool is_safety_record(EventKind kind) {
-  return row_of(kind).more.in_safety_record;
+  return row_of(kind).details.in_safety_record;
 }
 
 NewKeys wrap_participant_key(const PublicKey& investigator, int own_session,
                              const SecretKey& participant_key) {
   const SecretKey safety = safety_key(participant_key);
   return {.participant =
-              wrapped_for(investigator, participant_key_context(own_session), participant_key),
-          .safety = wrapped_for(investigator, safety_key_context(own_session), safety),
+              wrap_key_for(investigator, participant_key_context(own_session), participant_key),
+          .safety = wrap_key_for(investigator, safety_key_context(own_session), safety),
           .remarks = remarks_box(participant_key).public_half,
           .reasons = reasons_box(safety).public_half};
 }
@@ -140,16 +141,16 @@ BoxKeys remarks_box(const SecretKey& participant_key) {
   return box_keys(derive_key(participant_key, "remarks"));
 }
 
-Bytes keep_participant_key(const SecretKey& station_secret, int own_session,
-                           const SecretKey& participant_key) {
-  return seal(keeping_key(station_secret), participant_key_context(own_session), participant_key,
-              kWrapPadding);
+Bytes seal_station_copy(const SecretKey& station_secret, int own_session,
+                        const SecretKey& participant_key) {
+  return seal(station_copy_key(station_secret), participant_key_context(own_session),
+              participant_key, kWrapPadding);
 }
 
-std::optional<SecretKey> kept_participant_key(const SecretKey& station_secret, int own_session,
-                                              const Bytes& kept) {
-  return key_from(unseal(keeping_key(station_secret), participant_key_context(own_session), kept,
-                         kWrapPadding));
+std::optional<SecretKey> open_station_copy(const SecretKey& station_secret, int own_session,
+                                           const Bytes& copy) {
+  return key_from(unseal(station_copy_key(station_secret), participant_key_context(own_session),
+                         copy, kWrapPadding));
 }
 
 Event sealed_event(Event event, const std::string& secret, const SecretKey& participant_key,
@@ -175,19 +176,19 @@ Event sealed_event(Event event, const std::string& secret, const SecretKey& part
 }
 
 std::optional<OpenedEvent> opened_event(const Event& event, const SecretKey& participant_key) {
-  return opened_with(event, key_of_kind(event.kind, participant_key));
+  return open_event(event, key_of_kind(event.kind, participant_key));
 }
 
 EventOpener::EventOpener(const SecretKey& participant_key)
     : participant_(participant_key), safety_(safety_key(participant_key)) {}
 
 std::optional<OpenedParts> EventOpener::operator()(const Event& event) const {
-  return parts_opened_with(event, is_safety_record(event.kind) ? safety_ : participant_);
+  return open_parts(event, is_safety_record(event.kind) ? safety_ : participant_);
 }
 
 std::optional<OpenedEvent> opened_safety_event(const Event& event, const SecretKey& safety_key) {
   if (!is_safety_record(event.kind)) return std::nullopt;
-  return opened_with(event, safety_key);
+  return open_event(event, safety_key);
 }
 
 std::optional<std::string> unsealed(const Event& event, const SecretKey& participant_key) {
@@ -205,7 +206,7 @@ SealedTrace seal_trace(int own_session, int trial, const Trace& trace,
 }
 
 std::optional<Trace> unsealed_trace(const SealedTrace& sealed, const SecretKey& participant_key) {
-  // The sealer chose the padding, whose start is marked.
+  // The start of the padding is marked, so its size need not be known.
   const std::optional<Bytes> bytes = unseal(
       participant_key, trace_context(sealed.session, sealed.trial), sealed.box, /*padded_size=*/1);
   if (!bytes) return std::nullopt;

@@ -1,5 +1,5 @@
-/// \file The bodies of a session's events, and what is sealed with them. Each struct is one JSON
-/// object whose members its `describe` lists with their meaning.
+/// \file The bodies of a session's events, and the texts sealed with them. Each struct is one JSON
+/// object; `describe` lists its members.
 #pragma once
 
 #include "core/answer.hpp"
@@ -25,14 +25,14 @@ struct ScreenRecord {
   std::string source;
 
   void describe(BodyIo& io) {
-    io("mm_per_px", mm_per_px, "of the participant's screen, as windows count pixels");
+    io("mm_per_px", mm_per_px, "of the participant's screen, in the pixels of windows");
     io("source", source,
        "`measured` (by `screen calibrate`), `stated` (by the monitor) or `assumed`");
   }
   friend bool operator==(const ScreenRecord&, const ScreenRecord&) = default;
 };
 
-/// The device that the hand was on.
+/// The device of a session.
 struct StationRecord {
   std::string model;
   std::string firmware;
@@ -40,25 +40,25 @@ struct StationRecord {
   bool visual = false;
   double rate_hz = 0.0;
   std::string scheduling;
-  std::string calibration{};  ///< study::kUnverifiedDevice if the session was allowed without
+  std::string calibration{};  ///< hash of the certificate, or study::kUnverifiedDevice
   std::optional<ScreenRecord> screen{};
   std::array<double, 3> force_scale{1.0, 1.0, 1.0};
   std::array<double, 3> length_scale{1.0, 1.0, 1.0};
 
   void describe(BodyIo& io) {
-    io("model", model, "as the device reports it; may be empty");
-    io("firmware", firmware, "likewise");
+    io("model", model, "reported by the device; may be empty");
+    io("firmware", firmware, "reported by the device; may be empty");
     io("max_force_n", max_force_n, "of the device");
     io("visual", visual, "textures are shown on a screen instead of felt: pilot sessions only");
     io("rate_hz", rate_hz, "requested of the servo");
     io("scheduling", scheduling,
-       "that the servo's thread obtained, for instance `fifo 80, memory locked`");
+       "scheduling that the servo's thread obtained, for instance `fifo 80, memory locked`");
     io("calibration", calibration,
        "SHA-256 of the device's certificate, hexadecimal; `UNVERIFIED DEVICE`: the session was "
-       "allowed without a valid one; empty: none, as of devices without force");
-    io.part("screen", screen, "before a window");
+       "allowed without a valid one; empty: none, as for devices without force");
+    io.part("screen", screen, "if the participant sees a window");
     io("force_scale", force_scale, "of the device settings, by axis of the device frame");
-    io("length_scale", length_scale, "likewise");
+    io("length_scale", length_scale, "of the device settings, by axis of the device frame");
   }
   friend bool operator==(const StationRecord&, const StationRecord&) = default;
 };
@@ -81,16 +81,16 @@ struct SessionOpening {
   void describe(BodyIo& io) {
     io("participant", participant, "1 to 32 of `[0-9A-Za-z+-_]`; unique in a study");
     io("enrolment", enrolment, "decides the schedule; unique in a study", {.min = 1});
-    io.unless(1, "visit", visit, "of the participant; absent: the first", {.min = 2});
-    io.if_any("group", group, "the participant's, if the study's groups are open");
+    io.omit_if(1, "visit", visit, "of the participant; absent: the first", {.min = 2});
+    io.omit_if_empty("group", group, "the participant's group, if the study's groups are open");
     io("study_id", study_id, "as in `study-committed`");
-    io("seal", seal, "likewise");
+    io("seal", seal, "as in `study-committed`");
     io("device", device, "name of the driver");
-    io("device_serial", device_serial, "empty if it has none");
+    io("device_serial", device_serial, "of the device; empty if it has none");
     io("opened_utc", opened_utc, "ISO 8601; empty if simulated");
-    io("simulated", simulated, "the participant is no person");
-    io("pilot", pilot, "a session of a pilot study");
-    io.part("station", station, "in real time");
+    io("simulated", simulated, "whether the participant is simulated");
+    io("pilot", pilot, "whether the study is a pilot");
+    io.part("station", station, "only of sessions in real time");
   }
   [[nodiscard]] bool is_visual() const noexcept { return station && station->visual; }
 };
@@ -109,7 +109,7 @@ struct RemarkBody {
   void describe(BodyIo& io) { io("text", text, "the experimenter's words", {.sealed = true}); }
 };
 
-/// The answer to a trial among the members of a body.
+/// The members of a body that describe the answer to a trial.
 inline void describe_answer(BodyIo& io, std::optional<Answer>& answer) {
   std::optional<int> position = position_of(answer);
   std::optional<int> first_position = first_position_of(answer);
@@ -117,30 +117,30 @@ inline void describe_answer(BodyIo& io, std::optional<Answer>& answer) {
   if (answer && !position) ratings = ratings_of(answer);
   io("position", position, "index into the participant's layout of choices", {.sealed = true});
   io("first_position", first_position, "the choice before a change", {.sealed = true});
-  io("ratings", ratings, "in place of a position, one number for each scale", {.sealed = true});
+  io("ratings", ratings, "instead of a position, one number for each scale", {.sealed = true});
   if (!io.reads()) return;
-  if (position && ratings) throw StoreError("/ratings stands beside a position");
-  if (position) answer = Chosen{*position, first_position};
-  if (ratings) answer = Rated{std::move(*ratings)};
+  if (position && ratings) throw StoreError("/ratings and a position exclude each other");
+  if (position) answer = ChoiceAnswer{*position, first_position};
+  if (ratings) answer = RatingAnswer{std::move(*ratings)};
 }
 
 /// `practised`: one presentation of a texture that is not in the study.
 struct PracticeBody {
   int round = 0;
   int presentation = 0;
-  std::optional<Answer> answer{};  ///< in the practice's own layout
+  std::optional<Answer> answer{};  ///< in the layout of the practice
   std::optional<bool> correct{};
 
   void describe(BodyIo& io) {
     io("round", round, "round of practice", {.min = 1});
     io("presentation", presentation, "in the round", {.min = 1});
     describe_answer(io, answer);
-    io("correct", correct, "absent if no answer is right", {.sealed = true});
+    io("correct", correct, "whether the answer is right; absent if no answer is", {.sealed = true});
   }
 };
 
-/// The number of a trial: `first-contact`, `timed-out` and `explored-again`. Other bodies about a
-/// trial can be read as one.
+/// `first-contact`, `timed-out` and `explored-again`. Other bodies about a trial can be read as
+/// one.
 struct TrialBody {
   int trial = 0;
 
@@ -163,7 +163,7 @@ struct AnswerBody {
   int trial = 0;
   std::optional<Answer> answer{};
   std::optional<int> confidence{};
-  /// \name What an adaptive order chose (study::Trial)
+  /// \name The trial, if an adaptive order chose it (study::Trial)
   ///@{
   std::optional<std::string> kind{};
   std::optional<int> track{};
@@ -174,18 +174,20 @@ struct AnswerBody {
   void describe(BodyIo& io) {
     io("trial", trial, "number of the trial", {.min = 1});
     describe_answer(io, answer);
-    io("confidence", confidence, "if it was asked for", {.sealed = true});
+    io("confidence", confidence, "if the study asks for it", {.sealed = true});
     io("kind", kind,
-       "where answers decide what comes next: as in the schedule; `catch`: the procedure ignores "
+       "in an adaptive order: the trial's kind, as in the schedule; `catch`: the procedure ignores "
        "the answer",
        {.sealed = true});
-    io("track", track, "likewise, from 1; 0: with the hand off the device", {.sealed = true});
-    io("level", level, "likewise: index into the track's levels", {.sealed = true});
-    io("target", target, "likewise: index of the right choice", {.sealed = true});
+    io("track", track,
+       "in an adaptive order: the track, from 1; 0: none, with the hand off the device",
+       {.sealed = true});
+    io("level", level, "in an adaptive order: index into the track's levels", {.sealed = true});
+    io("target", target, "in an adaptive order: index of the right choice", {.sealed = true});
   }
 };
 
-/// Reason of an `interrupted` for a pause. The same presentation is the next one, whatever the
+/// The reason in an `interrupted` for a pause. The presentation is then repeated next, whatever the
 /// study does after other interruptions.
 inline constexpr const char* kPauseReason = "pause";
 
@@ -209,27 +211,27 @@ struct InterruptedBody {
        "([safety.md](safety.md))");
     io("device_fault", device_fault,
        "in real time: `none`, `link_lost`, `bad_data`, `warm_motors`, `limit_passed`, `driver`");
-    io("largest_force_n", largest_force_n, "in real time: of the flight record", {.sealed = true});
+    io("largest_force_n", largest_force_n, "in real time: in the flight record", {.sealed = true});
   }
 };
 
-/// Secret of an `interrupted` in real time: the faults, and the last seconds before them.
+/// The secret of an `interrupted` in real time: the faults, and the last seconds before them.
 struct InterruptionDetail {
   std::string safety_fault;  ///< name of the device layer's SafetyFault
   std::string device_fault;  ///< name of its DeviceFault
   std::int64_t ticks = 0;
   std::string flight;
-  double largest_force_n = 0.0;  ///< of these ticks; a member of the body
+  double largest_force_n = 0.0;  ///< of these ticks; written into the body
 
   void describe(BodyIo& io) {
     io("safety_fault", safety_fault, "as in the body");
-    io("device_fault", device_fault, "likewise");
+    io("device_fault", device_fault, "as in the body");
     io("ticks", ticks, "rows of `flight`");
     io("flight", flight,
-       "the last seconds before the interruption: CSV below a row of column names, with time, "
+       "the last seconds before the interruption: CSV with a header row; time, "
        "position, velocity, force requested and sent (both with the device's support), verdict, "
-       "faults, lateness, sequence, buttons, ready, and the force that the device says it exerted "
-       "(empty if it says none)");
+       "faults, lateness, sequence, buttons, ready, and the force that the device reports "
+       "(empty if it reports none)");
   }
   friend bool operator==(const InterruptionDetail&, const InterruptionDetail&) = default;
 };
@@ -241,7 +243,7 @@ struct PauseBody {
 
   void describe(BodyIo& io) {
     io("text", text, "the experimenter's reason; may be empty", {.sealed = true});
-    io("trial", trial, "whose answer is pending; absent: none is", {.min = 1});
+    io("trial", trial, "trial with a pending answer; absent: none", {.min = 1});
   }
 };
 
@@ -254,9 +256,9 @@ struct ResumedBody {
 
   void describe(BodyIo& io) {
     io("after", after, "`pause` or `program-ended`");
-    io("away_s", away_s, "since the event before", {.sealed = true});
-    io("program_version", program_version, "after the program ended");
-    io("trial", trial, "as in the pause before", {.min = 1});
+    io("away_s", away_s, "seconds since the previous event", {.sealed = true});
+    io("program_version", program_version, "program version, if the program ended");
+    io("trial", trial, "as in the preceding pause", {.min = 1});
   }
 };
 
@@ -266,9 +268,10 @@ struct StopBody {
   std::string text{};
 
   void describe(BodyIo& io) {
-    io.if_any("code", code,
-              "where the program stopped the session: `too many faults`, `stopped while waiting "
-              "for the device`, `restarted`");
+    io.omit_if_empty(
+        "code", code,
+        "if the program stopped the session: `too many faults`, `stopped while waiting "
+        "for the device`, `restarted`");
     io("text", text, "the experimenter's words; may be empty", {.sealed = true});
   }
 };
@@ -291,7 +294,7 @@ struct BlockBody {
 
   void describe(BodyIo& io) {
     io("block", block, "number of the block");
-    io("first_trial", first_trial, "number of its first trial from now on", {.min = 1});
+    io("first_trial", first_trial, "new number of its first trial", {.min = 1});
   }
 };
 
@@ -300,10 +303,10 @@ struct EmptyBody {
   void describe(BodyIo& /*io*/) {}
 };
 
-/// Secret of a `marked`: the marks sent to other instruments since the last such event, one entry
-/// in each list, and the offset of their clock.
+/// The secret of a `marked`: the marks sent to other instruments since the last such event, one
+/// entry in each list, and the offset of their clock.
 struct MarksBody {
-  std::vector<std::int64_t> codes{};  ///< Mark
+  std::vector<std::int64_t> codes{};  ///< values of Mark
   std::vector<std::int64_t> trials{};
   std::vector<std::int64_t> at_ns{};
   std::vector<std::int64_t> latency_ns{};
@@ -313,45 +316,46 @@ struct MarksBody {
   void describe(BodyIo& io) {
     io("codes", codes, "as on the serial line");
     io("trials", trials, "0 outside trials");
-    io("at_ns", at_ns, "of the event, since the session's opening");
+    io("at_ns", at_ns, "time of the mark, since the session's opening");
     io("latency_ns", latency_ns,
        "to the end of the write on the serial line; 0: no line, or the write failed");
     io("lsl_zero_s", lsl_zero_s, "the Lab Streaming Layer's time at the session's opening");
-    io("lsl_uncertainty_s", lsl_uncertainty_s, "its uncertainty");
+    io("lsl_uncertainty_s", lsl_uncertainty_s, "uncertainty of `lsl_zero_s`");
     const std::size_t count = codes.size();
     if (trials.size() != count || at_ns.size() != count || latency_ns.size() != count) {
-      throw StoreError("/codes has another length than the lists beside it");
+      throw StoreError("/codes and the lists beside it differ in length");
     }
   }
 };
 
-/// `closed`. Without the distribution of answers, which is the outcome if positions have meanings.
+/// `closed`. It omits the distribution of answers, which may be an outcome.
 struct ClosedBody {
   bool complete = false;
   int answers = 0;
   bool one_key = false;
-  /// Sealed, because weak levels of an adaptive track need less.
+  /// Sealed, because it reveals the levels that an adaptive track reached.
   std::optional<double> largest_force_n{};
 
   void describe(BodyIo& io) {
     io("complete", complete, "whether the schedule was finished");
-    io.if_any("answers", answers, "number of answers");
-    io.if_any("one_key", one_key,
-              "in studies of one plane a trial: 95 % of 20 answers or more are at one position");
+    io.omit_if_empty("answers", answers, "number of answers");
+    io.omit_if_empty(
+        "one_key", one_key,
+        "in studies with one plane per trial: of 20 or more answers, 95 % are at one position");
     io("largest_force_n", largest_force_n,
-       "that was sent in all presentations, to tenths of a newton", {.sealed = true});
+       "largest force sent in any presentation, to tenths of a newton", {.sealed = true});
   }
 };
 
-/// Secret of a `closed`: the chain before it. Without the key, another chain cannot be given this
-/// end.
+/// The secret of a `closed`: the chain before it. Without the key, nobody can append this end to
+/// another chain.
 struct ChainEnd {
   std::int64_t length = 0;
   Digest head{};
 
   void describe(BodyIo& io) {
     io("length", length, "number of events before it", {.min = 1});
-    io("head", head, "hash of the last");
+    io("head", head, "hash of the last of these events");
   }
   friend bool operator==(const ChainEnd&, const ChainEnd&) = default;
 };

@@ -12,7 +12,7 @@ namespace touchtrial::record {
 /// folders may not support such locks.
 class SessionLock {
  public:
-  /// Takes the lock without waiting.
+  /// Acquires the lock without waiting.
   /// \throws StoreError, naming the participant and what to do, if another program holds it, or the
   ///   file cannot be created
   SessionLock(const std::filesystem::path& database, const std::string& participant);

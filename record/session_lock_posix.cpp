@@ -15,40 +15,40 @@
 namespace touchtrial::record {
 namespace {
 
-/// The participant's own byte, which may lie beyond the end of the file.
-off_t place_of(const std::string& participant) {
+/// The offset of the participant's byte, which may be beyond the end of the file.
+off_t lock_offset(const std::string& participant) {
   const Digest digest = sha256(bytes_of(participant));
   std::uint64_t number = 0;
   for (std::size_t i = 0; i < 7; ++i) number = (number << 8U) | digest.at(i);
   return static_cast<off_t>(number);
 }
 
-/// \return whether the lock was taken; false if another holds it
-bool take(int file, const std::string& participant) {
+/// \return false, with errno, if the lock was not acquired
+bool lock_participant(int file, const std::string& participant) {
   struct flock lock {};
   lock.l_type = F_WRLCK;
   lock.l_whence = SEEK_SET;
-  lock.l_start = place_of(participant);
+  lock.l_start = lock_offset(participant);
   lock.l_len = 1;
   // The lock belongs to this open file, so that two sessions of one process exclude each other too.
   return ::fcntl(file, F_OFD_SETLK, &lock) == 0;
 }
 
-[[noreturn]] void refuse_lock(const std::filesystem::path& path, const std::string& why) {
-  throw StoreError(one_line(path.string() + ": " + why));
+[[noreturn]] void refuse_lock(const std::filesystem::path& path, const std::string& reason) {
+  throw StoreError(one_line(path.string() + ": " + reason));
 }
 
 }  // namespace
 
 SessionLock::SessionLock(const std::filesystem::path& database, const std::string& participant) {
-  const std::filesystem::path path = beside_database(database, ".lock");
+  const std::filesystem::path path = database_companion(database, ".lock");
   refuse_link(path);
   file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (file_ < 0) {
-    refuse_lock(path, std::string("cannot be made (") + std::strerror(errno) +
-                          "); check that its folder may be written");
+    refuse_lock(path, std::string("cannot be created (") + std::strerror(errno) +
+                          "); check that its folder is writable");
   }
-  if (take(file_, participant)) return;
+  if (lock_participant(file_, participant)) return;
   const int error = errno;
   ::close(std::exchange(file_, -1));
   if (error != EAGAIN && error != EACCES) {

@@ -10,25 +10,25 @@
 namespace touchtrial::record {
 namespace {
 
-/// The padding of an interruption: for a flight record of three seconds, which the usual record
-/// never exceeds, or for its ticks in whole thousands if it is longer. The size therefore reveals
-/// neither roughness nor duration.
+/// The padding of an interruption, bytes: room for a flight record of three seconds, or for the
+/// next whole thousand of ticks if it is longer. The size therefore reveals neither roughness nor
+/// duration.
 std::size_t interruption_padding(std::int64_t ticks) {
-  // A row has 21 values, 14 of them of up to 24 characters; ordinary rows need 330 bytes or less.
-  constexpr std::size_t kBytesAThousand = 384'000;
-  constexpr std::size_t kBytesBefore = 1024;
-  constexpr std::size_t kTypicalThousands = 3;
+  // A row is at most 384 bytes long: 21 values, 14 of them with up to 24 characters.
+  constexpr std::size_t kBytesPerThousandTicks = 384'000;
+  constexpr std::size_t kHeaderBytes = 1024;
+  constexpr std::size_t kMinThousands = 3;
   const std::size_t thousands = (static_cast<std::size_t>(ticks) + 999) / 1000;
-  return kBytesBefore + kBytesAThousand * std::max(kTypicalThousands, thousands);
+  return kHeaderBytes + kBytesPerThousandTicks * std::max(kMinThousands, thousands);
 }
 static_assert(1024 % kSealedUnit == 0 && 384'000 % kSealedUnit == 0);
 
 double largest_force_in(const Trace& trace) {
-  double largest = 0.0;  // squared
+  double largest_squared = 0.0;
   for (const TraceSample& sample : trace.samples) {
-    largest = std::max(largest, dot(sample.force_n, sample.force_n));
+    largest_squared = std::max(largest_squared, dot(sample.force_n, sample.force_n));
   }
-  return std::sqrt(largest);
+  return std::sqrt(largest_squared);
 }
 
 }  // namespace
@@ -56,7 +56,7 @@ void SessionRecorder::first_contact(std::chrono::nanoseconds at, int trial) {
 
 void SessionRecorder::answered(std::chrono::nanoseconds at, const AnswerBody& answer,
                                const std::optional<TrialEvidence>& evidence) {
-  append_with(at, evidence, {EventKind::answered, to_json(answer)});
+  append_with_evidence(at, evidence, {EventKind::answered, to_json(answer)});
 }
 
 void SessionRecorder::interrupted(std::chrono::nanoseconds at, int trial, const std::string& reason,
@@ -77,11 +77,11 @@ void SessionRecorder::interrupted(std::chrono::nanoseconds at, int trial, const 
 
 void SessionRecorder::timed_out(std::chrono::nanoseconds at, int trial,
                                 const std::optional<TrialEvidence>& evidence) {
-  append_with(at, evidence, {EventKind::timed_out, to_json(TrialBody{trial})});
+  append_with_evidence(at, evidence, {EventKind::timed_out, to_json(TrialBody{trial})});
 }
 
-TrialEvidence SessionRecorder::packed(TraceBody body, const TrialMeasures& measures,
-                                      const Trace& trace) const {
+TrialEvidence SessionRecorder::pack_evidence(TraceBody body, const TrialMeasures& measures,
+                                             const Trace& trace) const {
   SealedTrace sealed = seal_trace(session_, body.trial, trace, participant_key_);
   body.samples = static_cast<std::int64_t>(trace.samples.size());
   body.largest_force_n = largest_force_in(trace);
@@ -91,7 +91,7 @@ TrialEvidence SessionRecorder::packed(TraceBody body, const TrialMeasures& measu
 
 void SessionRecorder::trace_stored(std::chrono::nanoseconds at, const TraceBody& body,
                                    const TrialMeasures& measures, const Trace& trace) {
-  append(at, draft_of(packed(body, measures, trace)));
+  append(at, draft_of(pack_evidence(body, measures, trace)));
 }
 
 void SessionRecorder::block_restarted(std::chrono::nanoseconds at, int block, int first_trial,
@@ -129,7 +129,7 @@ void SessionRecorder::add_described(std::chrono::nanoseconds at, EventKind kind,
                                     DescribeBody describe, std::string body, std::string secret) {
   if (row_of(kind).body != describe) {
     throw StoreError("an event of kind '" + std::string(name_of(kind)) +
-                     "' has another body; use the one of its row in event_kinds.cpp");
+                     "' has the wrong body; use the type in its row of event_kinds.cpp");
   }
   append(at, {kind, std::move(body), std::move(secret)});
 }
@@ -138,8 +138,9 @@ void SessionRecorder::append(std::chrono::nanoseconds at, Draft draft) {
   append_together(at, std::span(&draft, 1));
 }
 
-void SessionRecorder::append_with(std::chrono::nanoseconds at,
-                                  const std::optional<TrialEvidence>& evidence, Draft draft) {
+void SessionRecorder::append_with_evidence(std::chrono::nanoseconds at,
+                                           const std::optional<TrialEvidence>& evidence,
+                                           Draft draft) {
   std::vector<Draft> drafts;
   if (evidence) drafts.push_back(draft_of(*evidence));
   drafts.push_back(std::move(draft));
@@ -148,14 +149,14 @@ void SessionRecorder::append_with(std::chrono::nanoseconds at,
 
 void SessionRecorder::append_together(std::chrono::nanoseconds at, std::span<Draft> drafts) {
   if (at < last_at_) {
-    throw StoreError("session " + std::to_string(session_) + ": the clock went backwards before '" +
+    throw StoreError("session " + std::to_string(session_) + ": the clock ran backwards before '" +
                      std::string(name_of(drafts.front().kind)) + "'; use a monotonic clock");
   }
   std::vector<RecordedEvent> events;
   Digest previous = head_;
   for (Draft& draft : drafts) {
     const std::int64_t sequence = length_ + static_cast<std::int64_t>(events.size());
-    events.push_back(chained(at, sequence, previous, draft));
+    events.push_back(make_event(at, sequence, previous, draft));
     previous = events.back().event.hash;
   }
   if (events.size() == 1) {
@@ -169,8 +170,8 @@ void SessionRecorder::append_together(std::chrono::nanoseconds at, std::span<Dra
   length_ += static_cast<std::int64_t>(events.size());
 }
 
-RecordedEvent SessionRecorder::chained(std::chrono::nanoseconds at, std::int64_t sequence,
-                                       const Digest& previous, Draft& draft) const {
+RecordedEvent SessionRecorder::make_event(std::chrono::nanoseconds at, std::int64_t sequence,
+                                          const Digest& previous, Draft& draft) const {
   Event event{.session = session_,
               .sequence = sequence,
               .kind = draft.kind,

@@ -15,13 +15,13 @@
 
 namespace touchtrial::record {
 
-/// An event, and the trace that comes with one of kind trace_stored.
+/// An event, and the trace of a trace_stored event.
 struct RecordedEvent {
   Event event;
   std::optional<SealedTrace> trace;
 };
 
-/// The evidence of a presentation, stored with its answer and ready to be written.
+/// The evidence of a presentation, ready to be stored with its answer.
 struct TrialEvidence {
   TraceBody body;
   TrialMeasures measures;
@@ -41,7 +41,7 @@ class EventSink {
   }
 };
 
-/// Keeps a whole session in memory, for StudyStore::add_session.
+/// Collects a session in memory, for StudyStore::add_session.
 class BufferedEvents final : public EventSink {
  public:
   void accept(const Event& event, const std::optional<SealedTrace>& trace) override;
@@ -50,9 +50,9 @@ class BufferedEvents final : public EventSink {
   std::vector<SealedTrace> traces;
 };
 
-/// The growing chain of one session. Not thread-safe; any number may run beside each other. Times
-/// must not be negative or decrease. Every function that records throws StoreError if the time
-/// decreases, a text is not UTF-8, or the sink refuses: the chain is then unchanged.
+/// The growing chain of one session. Not thread-safe. Times must not be negative or decrease. Every
+/// function that records throws StoreError if the time decreases, a text is not UTF-8, or the sink
+/// refuses; the chain is then unchanged.
 class SessionRecorder {
  public:
   /// \param session  number in the database, from 1
@@ -64,10 +64,10 @@ class SessionRecorder {
               const std::string& secret_schedule);
   void presented(std::chrono::nanoseconds at, int trial, int block);
   void first_contact(std::chrono::nanoseconds at, int trial);
-  /// \param evidence  of the same presentation, stored atomically with the answer
+  /// \param evidence  of the same presentation; stored atomically with the answer
   void answered(std::chrono::nanoseconds at, const AnswerBody& answer,
                 const std::optional<TrialEvidence>& evidence = std::nullopt);
-  /// \param reason  in clear: a fixed phrase that does not depend on the stimulus, never free text
+  /// \param reason  unencrypted: a fixed phrase, independent of the stimulus, never free text
   /// \param detail  sealed except the faults' names; the padding is the same for flight records of
   ///   up to 3,000 ticks, and depends on whole thousands of longer ones
   void interrupted(std::chrono::nanoseconds at, int trial, const std::string& reason,
@@ -75,19 +75,19 @@ class SessionRecorder {
   void timed_out(std::chrono::nanoseconds at, int trial,
                  const std::optional<TrialEvidence>& evidence = std::nullopt);
   /// Encodes and seals a trace, and fills `body.trace`, `body.samples` and `body.largest_force_n`.
-  /// Takes a few milliseconds for each second of exploration. Another thread may call it while this
-  /// one records.
-  [[nodiscard]] TrialEvidence packed(TraceBody body, const TrialMeasures& measures,
-                                     const Trace& trace) const;
-  /// Stores the result of `packed`, without an answer.
+  /// Takes a few milliseconds for each second of exploration. May be called on another thread
+  /// during recording.
+  [[nodiscard]] TrialEvidence pack_evidence(TraceBody body, const TrialMeasures& measures,
+                                            const Trace& trace) const;
+  /// Stores the result of `pack_evidence`, without an answer.
   void trace_stored(std::chrono::nanoseconds at, const TraceBody& body,
                     const TrialMeasures& measures, const Trace& trace);
-  /// \param first_trial  number of the block's first trial from now on
+  /// \param first_trial  new number of the block's first trial
   /// \param secret_schedule  JSON of the block's new presentations, sealed
   void block_restarted(std::chrono::nanoseconds at, int block, int first_trial,
                        const std::string& secret_schedule);
-  /// Any other event, which consists of a body and perhaps a sealed text.
-  /// \throws StoreError also if events of this kind have another body
+  /// Records any other event: a body and perhaps a sealed text.
+  /// \throws StoreError also if `Body` is not the body of this kind
   template <typename Body>
   void add(std::chrono::nanoseconds at, EventKind kind, const Body& body,
            const std::string& secret = {}) {
@@ -110,7 +110,7 @@ class SessionRecorder {
  private:
   struct Draft {
     EventKind kind{};
-    std::string body;  ///< whole
+    std::string body;  ///< public and sealed members
     std::string secret{};
     std::optional<std::size_t> padding{};  ///< empty: the kind's
     std::optional<SealedTrace> trace{};
@@ -121,10 +121,10 @@ class SessionRecorder {
   /// Appends all or none, in order, with the same time.
   void append_together(std::chrono::nanoseconds at, std::span<Draft> drafts);
   /// Appends after the presentation's trace, if there is one.
-  void append_with(std::chrono::nanoseconds at, const std::optional<TrialEvidence>& evidence,
-                   Draft draft);
-  [[nodiscard]] RecordedEvent chained(std::chrono::nanoseconds at, std::int64_t sequence,
-                                      const Digest& previous, Draft& draft) const;
+  void append_with_evidence(std::chrono::nanoseconds at,
+                            const std::optional<TrialEvidence>& evidence, Draft draft);
+  [[nodiscard]] RecordedEvent make_event(std::chrono::nanoseconds at, std::int64_t sequence,
+                                         const Digest& previous, Draft& draft) const;
   [[nodiscard]] static Draft draft_of(TrialEvidence evidence);
 
   int session_;

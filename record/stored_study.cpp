@@ -17,7 +17,7 @@ void StoredStudy::refuse(const std::string& text) const {
 }
 
 void StoredStudy::require_reason(const std::string& reason, const std::string& what) const {
-  if (reason.empty()) refuse(what + " needs a reason, which is recorded; give one");
+  if (reason.empty()) refuse(what + " requires a reason, which is recorded; give one");
 }
 
 const StudyCommitment& StoredStudy::commitment() const {
@@ -31,20 +31,20 @@ const StudyCommitment& StoredStudy::commitment() const {
 
 StudyState StoredStudy::state() const {
   constexpr std::array kDecisions = {EventKind::study_closed, EventKind::study_unblinded};
-  const auto chain_of = [&](std::span<const EventKind> kinds) {
+  const auto read_chain = [&](std::span<const EventKind> kinds) {
     std::vector<Event> chain;
     for_each_event(database_, {.session = 0, .kinds = kinds},
                    [&](const Event& event) { chain.push_back(event); });
     return chain;
   };
-  const std::vector<Event> decisions = chain_of(kDecisions);
-  // Only a look before the end depends on the sessions so far.
+  const std::vector<Event> decisions = read_chain(kDecisions);
+  // Only a look before the study ended depends on the sessions up to then.
   const bool is_final = std::ranges::all_of(decisions, [](const Event& event) {
     if (event.kind == EventKind::study_closed) return true;
     const UnblindingBody body = body_of<UnblindingBody>(event);
     return !body.interim && !body.question_alone && body.participant.empty();
   });
-  return state_of_chain(is_final ? decisions : chain_of({}));
+  return state_of_chain(is_final ? decisions : read_chain({}));
 }
 
 int StoredStudy::stations() const {
@@ -63,7 +63,7 @@ int StoredStudy::next_session() const {
   return static_cast<int>(std::max(last, std::int64_t{0})) + 1;
 }
 
-void StoredStudy::forget() const {
+void StoredStudy::drop_cache() const {
   sessions_.reset();
   trials_.reset();
 }
@@ -71,7 +71,7 @@ void StoredStudy::forget() const {
 void StoredStudy::refresh() const {
   Query query = database_.query("PRAGMA data_version");
   const std::int64_t version = query.step() ? query.integer(0) : 0;
-  if (version != read_version_) forget();
+  if (version != read_version_) drop_cache();
   read_version_ = version;
 }
 
@@ -147,35 +147,36 @@ ChainHead StoredStudy::head(int session) const {
 }
 
 void StoredStudy::sign_with(const Signer& signer) {
-  const StudyCommitment& known = commitment();
-  const bool is_station = known.station && known.station->key == signer.public_half();
-  if (!is_station && known.investigator != signer.public_half()) {
-    refuse(known.station ? "is the database of station " + known.station->name +
-                               "; give that station's file, or the study's key [other-station]"
-                         : "was merged from several stations' databases; what is recorded in it "
-                           "takes the investigator's key, name it with --key");
+  const StudyCommitment& commitment = this->commitment();
+  const bool is_station = commitment.station && commitment.station->key == signer.public_half();
+  if (!is_station && commitment.investigator != signer.public_half()) {
+    refuse(commitment.station
+               ? "is the database of station " + commitment.station->name +
+                     "; give that station's file, or the study's key [other-station]"
+               : "was merged from several stations' databases; recording in it requires "
+                 "the investigator's key, name it with --key");
   }
   signer_ = signer;
 }
 
-void StoredStudy::set_head_writer(HeadWriter keeper, HeadRecord now) {
-  heads_ = std::move(keeper);
-  known_ = std::move(now);
+void StoredStudy::set_head_writer(HeadWriter writer, HeadRecord record) {
+  head_writer_ = std::move(writer);
+  head_record_ = std::move(record);
 }
 
-void StoredStudy::update_heads(const HeadUpdate& news) {
-  if (!heads_) return;
-  known_.acknowledged += news.answers;
+void StoredStudy::update_heads(const HeadUpdate& update) {
+  if (!head_writer_) return;
+  head_record_.acknowledged += update.answers;
   const std::pair heads = database_.run(
-      [&] { return std::pair(head(0), news.session == 0 ? ChainHead{} : head(news.session)); });
-  heads_([&](HeadRecord& record) {
-    if (record.count == 0) record = known_;
-    record.advance_answers(known_.acknowledged);
+      [&] { return std::pair(head(0), update.session == 0 ? ChainHead{} : head(update.session)); });
+  head_writer_([&](HeadRecord& record) {
+    if (record.count == 0) record = head_record_;
+    record.advance_answers(head_record_.acknowledged);
     record.advance_file(heads.first);
-    if (news.ended) {
-      record.sessions.erase(news.session);
-    } else if (news.session != 0) {
-      record.advance_session(news.session, heads.second);
+    if (update.ended) {
+      record.sessions.erase(update.session);
+    } else if (update.session != 0) {
+      record.advance_session(update.session, heads.second);
     }
   });
 }
@@ -183,13 +184,13 @@ void StoredStudy::update_heads(const HeadUpdate& news) {
 void StoredStudy::append_to_file(EventKind kind, std::chrono::nanoseconds at,
                                  const std::string& body, Bytes sealed) {
   if (!signer_) {
-    refuse("what is recorded is signed; give this station's file, or the investigator's key");
+    refuse("recording requires a signature; give this station's file, or the investigator's key");
   }
   const std::optional<Event> last = last_event(0);
   if (last) require_signed(*last);
   const bool is_investigator = signer_->public_half() == commitment().investigator;
   if (kind == EventKind::study_unblinded && !is_investigator) {
-    refuse("unblinding takes the investigator's key; name it with --key [needs-key]");
+    refuse("unblinding requires the investigator's key; name it with --key [needs-key]");
   }
   append(signed_event(next_on_file(last ? &*last : nullptr, kind, at, body, std::move(sealed)),
                       *signer_),
@@ -198,8 +199,8 @@ void StoredStudy::append_to_file(EventKind kind, std::chrono::nanoseconds at,
 
 void StoredStudy::append_about(int session, EventKind kind, std::chrono::nanoseconds at,
                                const std::string& body) {
-  const SessionOpenedBody opened = body_of<SessionOpenedBody>(opening_on_file(session));
-  PersonText text = sealed_person_text(kind, at, body, opened);
+  const SessionOpenedBody opening = body_of<SessionOpenedBody>(opening_on_file(session));
+  PersonText text = sealed_person_text(kind, at, body, opening);
   append_to_file(kind, at, text.clear, std::move(text.sealed));
 }
 
@@ -222,7 +223,7 @@ void StoredStudy::require_signed(const Event& last) const {
 }
 
 void StoredStudy::append(const Event& event, const std::optional<SealedTrace>& trace) {
-  static_cast<void>(sessions());  // of before
+  static_cast<void>(sessions());  // reads the rows before this event
   if (event.session == 0 || event.kind == EventKind::opened || event.kind == EventKind::closed) {
     fold(*sessions_, event);
   }

@@ -1,5 +1,5 @@
-/// \file A study in its database: the operations behind StudyStore, and its two inner parts
-/// (sessions that are stored event by event, and the check of all stored data). Private to record.
+/// \file The implementation of StudyStore: a study in its database, sessions that are stored event
+/// by event, and the check of all stored data. Private to record.
 /// Call everything here inside Database::run, and functions that write inside StoredStudy::change.
 #pragma once
 
@@ -21,13 +21,13 @@ namespace touchtrial::record {
 
 /// A session's keys as stored in a database. See sealing.hpp.
 struct SessionKeys {
-  NewKeys wrapped;  ///< for the investigator
-  Bytes kept;       ///< at the station, while the session is open; may be empty
+  NewKeys wrapped;     ///< for the investigator
+  Bytes station_copy;  ///< while the session is open; may be empty
 };
 
-/// The changes of a commit for head files, besides the end of the file's chain.
+/// A commit's changes to head files, besides the end of the file's chain.
 struct HeadUpdate {
-  int session = 0;  ///< whose chain grew; 0: none
+  int session = 0;  ///< the session whose chain grew; 0: none
   bool ended = false;
   std::int64_t answers = 0;  ///< added by the commit
 };
@@ -38,24 +38,24 @@ class StoredStudy {
 
   [[nodiscard]] const Database& database() const noexcept { return database_; }
 
-  /// The first event's body; read once.
+  /// The body of the first event, which is read only once.
   /// \throws StoreError if there is no first event
   [[nodiscard]] const StudyCommitment& commitment() const;
   [[nodiscard]] StudyState state() const;
   /// The end of a chain (0: the file's).
   [[nodiscard]] ChainHead head(int session) const;
   [[nodiscard]] std::optional<Event> last_event(int session) const;
-  /// How many stations' files were collected into this one.
+  /// The number of stations' files that were collected into this one.
   [[nodiscard]] int stations() const;
   [[nodiscard]] int next_session() const;
   /// The smallest enrolment number that is neither taken nor reserved.
   [[nodiscard]] int next_enrolment() const;
-  /// The number that the participant inherits, else next_enrolment.
+  /// The enrolment number that the participant inherits, or else next_enrolment.
   [[nodiscard]] int enrolment_for(const std::string& participant) const;
-  /// Every session by its events and the file's chain, by number. Read once, then updated by
-  /// appended events, and read again when another program has written.
+  /// Every session's row, by number. Read once, updated by appended events, and read again when
+  /// another program has written.
   [[nodiscard]] const std::map<int, SessionRow>& sessions() const;
-  /// The same of all trials, by session and trial; read again after an event of a session.
+  /// Every trial's row, by session and trial. Read again after an event of a session.
   [[nodiscard]] const std::vector<TrialRow>& trials() const;
   /// The participant's session of the last visit that was not replaced, if any.
   [[nodiscard]] std::optional<SessionRow> session_of(const std::string& participant) const;
@@ -66,47 +66,47 @@ class StoredStudy {
   void sign_with(const Signer& signer);
   /// Adds a signed event to the file's chain.
   /// \throws StoreError if there is no signer, or only the investigator may sign the event
-  /// \throws EventFault if the last event is signed by none of the two
+  /// \throws EventFault if neither of the two signed the last event
   void append_to_file(EventKind kind, std::chrono::nanoseconds at, const std::string& body,
                       Bytes sealed = {});
-  /// \param now  record_of this database
-  void set_head_writer(HeadWriter keeper, HeadRecord now);
+  /// \param record  record_of this database
+  void set_head_writer(HeadWriter writer, HeadRecord record);
   /// Passes a commit to the writer of head files, if there is one.
-  void update_heads(const HeadUpdate& news);
-  /// The same for an event about a person, whose texts are sealed.
-  /// \param body  whole
+  void update_heads(const HeadUpdate& update);
+  /// Does what append_to_file does, for an event about a person, whose texts are sealed.
+  /// \param body  complete
   void append_about(int session, EventKind kind, std::chrono::nanoseconds at,
                     const std::string& body);
   /// Adds an event of a chain, and updates `sessions`.
   void append(const Event& event, const std::optional<SealedTrace>& trace);
-  /// After a participant withdrew or was replaced during a session, only its end is recorded.
-  /// \throws StoreError for any other event of the session
+  /// \throws StoreError if the event's participant has withdrawn or was replaced, unless the event
+  ///   ends the session
   void refuse_after_withdrawal(const Event& event) const;
 
-  /// As Database::change; cached rows of a failed transaction are dropped.
+  /// Does what Database::change does; if it fails, drops the cached rows.
   template <typename Work>
   void change(Work&& work) {
     try {
       database_.change(std::forward<Work>(work));
     } catch (...) {
-      forget();
+      drop_cache();
       throw;
     }
   }
 
-  /// Admits a session: stores its key, and its opening on the file's chain.
+  /// Admits a new session: stores its keys, and records its opening on the file's chain.
   /// \throws StoreError if the study is closed, the session is not the next, belongs to another
-  ///   study, its participant or enrolment is taken (by which session), or it would mix pilots with
-  ///   others or sessions on a screen with sessions on a haptic device
-  void admit(const Event& opened, const SessionKeys& keys, std::chrono::nanoseconds at);
+  ///   study, its participant or enrolment is taken (the message names the session), or it would
+  ///   mix pilots with others or sessions on a screen with sessions with a haptic device
+  void admit(const Event& opening_event, const SessionKeys& keys, std::chrono::nanoseconds at);
   /// The last event of a session that may continue.
   /// \throws StoreError if there is no such session, it is closed, its participant has withdrawn,
   ///   or the study is closed
-  [[nodiscard]] Event last_of_open(int session) const;
+  [[nodiscard]] Event last_event_of_open(int session) const;
   /// Records a session's end on the file's chain, and erases the station's copy of its key.
-  /// \param closed  its last event
+  /// \param closing_event  its last event
   /// \return whether there was a copy to erase
-  bool conclude(const Event& closed, std::chrono::nanoseconds at);
+  bool conclude(const Event& closing_event, std::chrono::nanoseconds at);
   /// Checkpoints the log into the file, which limits the loss from a damaged log and removes pages
   /// with erased copies of keys. No effect if the disk fails or another program reads. Call it
   /// outside of `change`.
@@ -114,35 +114,36 @@ class StoredStudy {
 
   /// Checks the events of a finished session against each other.
   /// \throws StoreError, EventFault
-  void check_whole(const BufferedEvents& session) const;
-  /// \pre check_whole found no fault
-  void store_whole(const BufferedEvents& session, const NewKeys& keys, std::chrono::nanoseconds at);
+  void check_complete(const BufferedEvents& session) const;
+  /// \pre check_complete found no fault
+  void store_complete(const BufferedEvents& session, const NewKeys& keys,
+                      std::chrono::nanoseconds at);
 
-  /// Records a withdrawal, and destroys the keys of what it does not retain.
-  /// \throws StoreError if no more is retained already, or the safety record must not be erased yet
+  /// Records a withdrawal, and destroys the keys of the data that it does not retain.
+  /// \throws StoreError if the same data or more were already withdrawn, or the safety record must
+  ///   not be erased yet
   void withdraw(const WithdrawalBody& withdrawal, std::chrono::nanoseconds at);
   /// \throws StoreError if the session may still continue or was replaced, or `by` is taken
   void replace(const ReplacementBody& replacement, std::chrono::nanoseconds at);
 
-  /// \throws StoreError with the file's name before `text`
+  /// \throws StoreError, always, with the file's name before `text`
   [[noreturn]] void refuse(const std::string& text) const;
   /// \throws StoreError naming `what` if `reason` is empty
   void require_reason(const std::string& reason, const std::string& what) const;
 
  private:
-  /// Forgets what another program has changed.
+  /// Drops cached rows if another program has written.
   void refresh() const;
-  void forget() const;
-  /// \throws StoreError if the database takes no more sessions: it was collected, or is closed
-  void refuse_if_over() const;
+  void drop_cache() const;
+  /// \throws StoreError if the study accepts no more sessions: it was collected, or is closed
+  void require_open_study() const;
   void require_participant_id(const std::string& id) const;
   void require_signed(const Event& last) const;
   /// The first event about a session on the file's chain.
   [[nodiscard]] Event opening_on_file(int session) const;
   void require_retention_over(int session, std::chrono::nanoseconds at) const;
   void check_opening(const SessionOpening& opening) const;
-  /// A database holds either pilots or others, and sessions either on a screen or on a haptic
-  /// device.
+  /// Refuses to mix pilots with others, or sessions on a screen with sessions with a haptic device.
   void refuse_mixture(const SessionOpening& opening) const;
   void refuse_if_taken(const SessionOpening& opening) const;
   /// Refuses a participant who was replaced by another, and a number that is reserved for another.
@@ -156,10 +157,10 @@ class StoredStudy {
   mutable std::optional<StudyCommitment> commitment_;
   mutable std::optional<DerivedRows> sessions_;  ///< without trials
   mutable std::optional<std::vector<TrialRow>> trials_;
-  mutable std::int64_t read_version_ = 0;  ///< SQLite's data_version of both
+  mutable std::int64_t read_version_ = 0;  ///< SQLite's data_version when they were read
   std::optional<Signer> signer_;
-  HeadWriter heads_;
-  HeadRecord known_;  ///< for a missing head file, with the answers so far
+  HeadWriter head_writer_;
+  HeadRecord head_record_;  ///< for a missing head file, with the answers so far
 };
 
 /// The durable sink: every event, or group of events, is one transaction.
@@ -179,11 +180,11 @@ class StoredSession final : public EventSink {
   void refuse_if_others_wrote(int session) const;
   /// \param rows  updated
   /// \return whether the station's copy of the session's key was erased
-  bool store(const RecordedEvent& recorded, bool first, DerivedRows& rows);
+  bool store(const RecordedEvent& recorded, bool is_first, DerivedRows& rows);
 
   StoredStudy& study_;
   ChainLink chain_;
-  DerivedRows rows_;  ///< the session's rows, which decide what may follow
+  DerivedRows rows_;  ///< the session's rows, which decide the possible next events
   SessionKeys keys_;
   UtcClock utc_;
 };
@@ -192,7 +193,7 @@ class StoredSession final : public EventSink {
 /// every session's chain, the sessions against the file's chain, keys, traces, and the schema. Call
 /// it inside a transaction.
 /// \param traces  `skip` omits structure and traces
-/// \param reader  receives every session whose chain is intact; may be empty
+/// \param reader  receives every session with an intact chain; may be empty
 [[nodiscard]] std::optional<ChainFault> find_first_fault(const Database& database,
                                                          TraceCheck traces,
                                                          const SessionReader& reader);

@@ -16,21 +16,20 @@
 namespace touchtrial::record {
 namespace {
 
-[[noreturn]] void refuse_taken(const std::filesystem::path& path) {
+[[noreturn]] void refuse_existing_database(const std::filesystem::path& path) {
   throw StoreError(one_line(path.string()) +
-                   ": exists already; choose another name or continue with it");
+                   ": already exists; choose another name or continue with it");
 }
 
 void check_tables(const Database& database) {
   for (const char* const table : kTables) {
     if (database.connection().tableExists(table)) continue;
-    throw DamagedStore(
-        database.refusal("lacks tables of its schema; it is damaged, restore it from a backup"));
+    throw DamagedStore(database.refusal("lacks tables; it is damaged, restore it from a backup"));
   }
 }
 
-/// Skips the stations' own chains, whose content the collected study's chain repeats.
-EventVisitor unless_of_station(const EventVisitor& visit) {
+/// Skips the stations' chains, whose content the collected study's chain repeats.
+EventVisitor skipping_station_chains(const EventVisitor& visit) {
   return [&visit](const Event& event) {
     if (event.session >= 0) visit(event);
   };
@@ -41,13 +40,13 @@ EventVisitor unless_of_station(const EventVisitor& visit) {
 struct StudyStore::Impl {
   explicit Impl(Database opened) : study(std::move(opened)) {}
 
-  /// As Database::run.
+  /// Does what Database::run does.
   template <typename Work>
   decltype(auto) run(Work&& work) const {
     return database().run(std::forward<Work>(work));
   }
 
-  /// As Database::change.
+  /// Does what Database::change does, and updates head files.
   template <typename Work>
   void change(Work&& work) {
     study.change(std::forward<Work>(work));
@@ -67,19 +66,19 @@ StudyStore& StudyStore::operator=(StudyStore&&) noexcept = default;
 StudyStore StudyStore::create(const std::filesystem::path& path, const StudyCommitment& commitment,
                               std::chrono::nanoseconds at, const Signer& signer) {
   refuse_link(path);
-  if (is_there(path)) refuse_taken(path);
-  // The file gets its name when it is whole, so that no early end of the program leaves half of it.
+  if (path_exists(path)) refuse_existing_database(path);
+  // The file gets its name when it is complete, so that a killed program leaves no part of it.
   const Draft draft(path, Draft::Kind::folder);
-  const std::filesystem::path made = draft.path() / path.filename();
-  fill_new(made, commitment, at, signer);
-  if (!move_to_free_name(made, path)) refuse_taken(path);
+  const std::filesystem::path new_file = draft.path() / path.filename();
+  fill(new_file, commitment, at, signer);
+  if (!move_to_free_name(new_file, path)) refuse_existing_database(path);
   StudyStore store = open(path, Access::read_write);
   store.sign_with(signer);
   return store;
 }
 
-void StudyStore::fill_new(const std::filesystem::path& draft, const StudyCommitment& commitment,
-                          std::chrono::nanoseconds at, const Signer& signer) {
+void StudyStore::fill(const std::filesystem::path& draft, const StudyCommitment& commitment,
+                      std::chrono::nanoseconds at, const Signer& signer) {
   Impl impl(Database::create(draft));
   make_tables(impl.database());
   impl.change([&] {
@@ -88,7 +87,7 @@ void StudyStore::fill_new(const std::filesystem::path& draft, const StudyCommitm
                      signer),
         std::nullopt);
   });
-  // From its birth the file is whole without its log.
+  // A new file is complete without its log.
   impl.run([&] { return impl.database().checkpoint(); });
 }
 
@@ -99,10 +98,10 @@ StudyStore StudyStore::open(const std::filesystem::path& path, Access access) {
     check_tables(impl->database());
     if (access == Access::read_only) return;
     // A foreign trigger could suppress new events.
-    if (const auto differs = schema_fault(impl->database())) {
-      impl->study.refuse(differs->what + "; nothing is recorded in it" +
-                         (differs->remedy.empty() ? ", run `touchtrial verify`"
-                                                  : "; remove it: " + differs->remedy));
+    if (const auto fault = schema_fault(impl->database())) {
+      impl->study.refuse(
+          fault->what + "; it cannot be used for recording" +
+          (fault->remedy.empty() ? ", run `touchtrial verify`" : "; remove it: " + fault->remedy));
     }
   });
   return StudyStore(std::move(impl));
@@ -116,9 +115,9 @@ void StudyStore::sign_with(const Signer& signer) {
   impl_->run([&] { impl_->study.sign_with(signer); });
 }
 
-void StudyStore::set_head_writer(HeadWriter keeper) {
-  HeadRecord now = record_of(*this);
-  impl_->study.set_head_writer(std::move(keeper), std::move(now));
+void StudyStore::set_head_writer(HeadWriter writer) {
+  HeadRecord record = record_of(*this);
+  impl_->study.set_head_writer(std::move(writer), std::move(record));
   impl_->study.update_heads({});
 }
 
@@ -195,7 +194,8 @@ std::vector<Event> StudyStore::events(int session) const {
 
 void StudyStore::for_each(EventKind kind, const std::function<void(const Event&)>& visit) const {
   impl_->run([&] {
-    for_each_event(impl_->database(), {.kinds = std::span(&kind, 1)}, unless_of_station(visit));
+    for_each_event(impl_->database(), {.kinds = std::span(&kind, 1)},
+                   skipping_station_chains(visit));
   });
 }
 
@@ -203,7 +203,7 @@ void StudyStore::for_each_of(std::span<const EventKind> kinds,
                              const std::function<void(const Event&)>& visit) const {
   if (kinds.empty()) return;
   impl_->run(
-      [&] { for_each_event(impl_->database(), {.kinds = kinds}, unless_of_station(visit)); });
+      [&] { for_each_event(impl_->database(), {.kinds = kinds}, skipping_station_chains(visit)); });
 }
 
 int StudyStore::next_session() const {
@@ -260,8 +260,8 @@ std::vector<Event> StudyStore::station_chain(int station) const {
 
 void StudyStore::add_session(const BufferedEvents& session, const NewKeys& keys,
                              std::chrono::nanoseconds at) {
-  impl_->run([&] { impl_->study.check_whole(session); });
-  impl_->change([&] { impl_->study.store_whole(session, keys, at); });
+  impl_->run([&] { impl_->study.check_complete(session); });
+  impl_->change([&] { impl_->study.store_complete(session, keys, at); });
 }
 
 std::unique_ptr<EventSink> StudyStore::begin_session(int session, const NewKeys& keys, UtcClock utc,
@@ -272,7 +272,7 @@ std::unique_ptr<EventSink> StudyStore::begin_session(int session, const NewKeys&
 
 std::unique_ptr<EventSink> StudyStore::continue_session(int session, UtcClock utc) {
   return impl_->run([&] {
-    return std::make_unique<StoredSession>(impl_->study, impl_->study.last_of_open(session),
+    return std::make_unique<StoredSession>(impl_->study, impl_->study.last_event_of_open(session),
                                            std::move(utc));
   });
 }
@@ -317,16 +317,16 @@ void StudyStore::look_at(const std::string& participant, std::chrono::nanosecond
                          const std::string& reason) {
   impl_->change([&] {
     const std::vector<SessionRow> rows = sessions_of(participant);
-    const std::string whose = "participant " + participant;
+    const std::string name = "participant " + participant;
     impl_->study.require_reason(reason, "a look at outcomes");
-    if (rows.empty()) impl_->study.refuse(whose + " has no session; check the participant id");
+    if (rows.empty()) impl_->study.refuse(name + " has no session; check the participant id");
     if (std::ranges::all_of(rows, &SessionRow::erased)) {
-      impl_->study.refuse(whose +
+      impl_->study.refuse(name +
                           " has withdrawn, and the data are erased; there is nothing to see");
     }
     for (const SessionRow& row : rows) {
       if (!row.can_resume()) continue;
-      impl_->study.refuse("session " + std::to_string(row.session) + " (" + whose +
+      impl_->study.refuse("session " + std::to_string(row.session) + " (" + name +
                           ") may still continue; look at it when it has ended");
     }
     const bool interim = !impl_->study.state().closed;
@@ -342,10 +342,10 @@ void StudyStore::exclude(int session, std::chrono::nanoseconds at, const std::st
     if (impl_->study.session(session).excluded) {
       impl_->study.refuse("session " + std::to_string(session) + " is already excluded");
     }
-    const bool seen = impl_->study.state().shows(session);
+    const bool was_seen = impl_->study.state().shows(session);
     impl_->study.append_about(
         session, EventKind::participant_excluded, at,
-        to_json(ParticipantBody{.session = session, .reason = reason, .after_outcomes = seen}));
+        to_json(ParticipantBody{.session = session, .reason = reason, .after_outcomes = was_seen}));
   });
 }
 
@@ -368,7 +368,7 @@ void StudyStore::withdraw(std::span<const int> sessions, std::chrono::nanosecond
   if (!clear_log()) {
     impl_->study.refuse(
         "the withdrawal is recorded, but another program keeps the key in the file's -wal; close "
-        "it there, then open and close the database once for writing");
+        "that program, then open and close the database once for writing");
   }
 }
 
@@ -417,9 +417,9 @@ namespace {
 
 void copy(const Database& database, const std::filesystem::path& to) {
   const Draft draft(to, Draft::Kind::folder);
-  const std::filesystem::path made = draft.path() / to.filename();
-  database.run([&] { database.copy_to(made); });
-  move_to_output(made, to);
+  const std::filesystem::path new_file = draft.path() / to.filename();
+  database.run([&] { database.copy_to(new_file); });
+  move_to_output(new_file, to);
 }
 
 }  // namespace

@@ -32,11 +32,11 @@ struct Channel {
   Vec3 TraceSample::*vector;
   double Vec3::*component;
   double steps_per_unit;
-  double limit;  ///< largest magnitude, in units
-  int differences;
+  double limit;     ///< largest magnitude, in units
+  int differences;  ///< order of the stored differences, 1 or 2
 };
 
-// Motion is smooth, so its second differences are small; forces carry the texture's vibration,
+// Motion is smooth, so its second differences are small. Forces contain the texture's vibration,
 // whose second differences would be larger than its first.
 constexpr double kPositionStepsPerMm = 1000.0;
 constexpr double kForceStepsPerN = 4096.0;
@@ -49,9 +49,9 @@ constexpr std::array<Channel, 6> kChannels = {{
     {&TraceSample::force_n, &Vec3::z, kForceStepsPerN, 100.0, 1},
 }};
 
-[[noreturn]] void refuse_bytes(const char* why) {
-  throw StoreError(std::string("trace: ") + why +
-                   "; the database is damaged or of another version, restore it from a backup");
+[[noreturn]] void refuse_bytes(const char* reason) {
+  throw StoreError(std::string("trace: ") + reason +
+                   "; the database is damaged or has another version, restore it from a backup");
 }
 
 constexpr std::size_t kNumbers = kChannels.size();
@@ -69,34 +69,34 @@ constexpr bool is_in_order() {
 using Pair = double __attribute__((vector_size(2 * sizeof(double))));
 using PairOfSteps = std::int32_t __attribute__((vector_size(2 * sizeof(std::int32_t))));
 
-/// Uninitialised memory, for numbers that are all written before they are read.
+/// Uninitialised memory, which is written before it is read.
 template <typename Number>
-class Room {
+class Buffer {
  public:
-  explicit Room(std::size_t size)
+  explicit Buffer(std::size_t size)
       : numbers_(std::make_unique_for_overwrite<Number[]>(size)), size_(size) {}
-  [[nodiscard]] std::span<Number> all() const noexcept { return {numbers_.get(), size_}; }
+  [[nodiscard]] std::span<Number> span() const noexcept { return {numbers_.get(), size_}; }
 
  private:
   std::unique_ptr<Number[]> numbers_;
   std::size_t size_;
 };
 
-/// Whole steps of all channels, one channel after the other. The limits keep all differences of
+/// Quantises samples into whole steps, one channel after the other. The limits keep second
 /// differences within 32 bits.
-Room<std::int32_t> quantised(std::span<const TraceSample> samples) {
-  // A sample is its channels' numbers in their order.
+Buffer<std::int32_t> quantise(std::span<const TraceSample> samples) {
+  // A sample consists of its channels' numbers, in the order of the channels.
   static_assert(sizeof(TraceSample) == kNumbers * sizeof(double));
   static_assert(is_in_order());
   // Adding and subtracting it rounds to whole numbers, halves to even.
   constexpr double kRounding = 0x1.8p52;
   const std::size_t count = samples.size();
-  Room<std::int32_t> steps(kNumbers * count);
-  bool inside = true;
+  Buffer<std::int32_t> steps(kNumbers * count);
+  bool all_inside = true;
   for (std::size_t c = 0; c < kNumbers; c += 2) {
     const Pair scale = {kChannels[c].steps_per_unit, kChannels[c + 1].steps_per_unit};
     const Pair limit = {kChannels[c].limit, kChannels[c + 1].limit};
-    std::int32_t* const first = steps.all().data() + c * count;
+    std::int32_t* const first = steps.span().data() + c * count;
     auto fits = limit == limit;
     for (std::size_t i = 0; i < count; ++i) {
       Pair value;
@@ -105,16 +105,16 @@ Room<std::int32_t> quantised(std::span<const TraceSample> samples) {
       const auto is_inside = (value <= limit) & (value >= -limit);  // false for NaN
       fits &= is_inside;
       value = is_inside ? value * scale : Pair{};
-      const PairOfSteps whole =
+      const PairOfSteps rounded =
           __builtin_convertvector((value + kRounding) - kRounding, PairOfSteps);
-      first[i] = whole[0];
-      first[count + i] = whole[1];
+      first[i] = rounded[0];
+      first[count + i] = rounded[1];
     }
-    inside = inside && fits[0] != 0 && fits[1] != 0;
+    all_inside = all_inside && fits[0] != 0 && fits[1] != 0;
   }
-  if (!inside) {
+  if (!all_inside) {
     throw StoreError(
-        "trace: a sample is not finite or beyond 10 m or 100 N; check the device's units");
+        "trace: a sample is not finite or exceeds 10 m or 100 N; check the device's units");
   }
   return steps;
 }
@@ -137,13 +137,13 @@ void put(Bytes& bytes, Unsigned number) {
 /// Reads bytes from the front, never beyond the end.
 class Cursor {
  public:
-  explicit Cursor(ByteView bytes) : left_(bytes) {}
+  explicit Cursor(ByteView bytes) : remaining_(bytes) {}
 
   [[nodiscard]] ByteView take(std::size_t count) {
-    if (count > left_.size()) refuse_bytes("its bytes end too early");
-    const ByteView taken = left_.first(count);
-    left_ = left_.subspan(count);
-    return taken;
+    if (count > remaining_.size()) refuse_bytes("it is truncated");
+    const ByteView bytes = remaining_.first(count);
+    remaining_ = remaining_.subspan(count);
+    return bytes;
   }
   template <typename Unsigned>
   [[nodiscard]] Unsigned number() {
@@ -155,10 +155,10 @@ class Cursor {
     }
     return value;
   }
-  [[nodiscard]] bool at_end() const { return left_.empty(); }
+  [[nodiscard]] bool at_end() const { return remaining_.empty(); }
 
  private:
-  ByteView left_;
+  ByteView remaining_;
 };
 
 struct FreeCompressor {
@@ -171,9 +171,9 @@ using Compressor = std::unique_ptr<ZSTD_CCtx, FreeCompressor>;
                    "); free some memory");
 }
 
-/// Level 1 with a search for long matches only, in a small table: in a plane of differences only
-/// runs of zeros repeat, and the entropy coder handles the rest. Takes half the time for the same
-/// size.
+/// Makes a compressor of level 1 that searches only for long matches, in a small table. In a plane
+/// of differences only runs of zeros repeat, and the entropy coder handles the rest. This halves
+/// the time at equal size.
 Compressor make_compressor() {
   Compressor compressor(ZSTD_createCCtx());
   if (!compressor) throw std::bad_alloc();
@@ -187,20 +187,20 @@ Compressor make_compressor() {
 }
 
 /// The buffers for packing a trace's channels, one after the other.
-struct Packing {
-  explicit Packing(std::size_t count)
+struct PackingBuffers {
+  explicit PackingBuffers(std::size_t count)
       : codes(count), plane(count), frame(ZSTD_compressBound(count)) {}
 
   Compressor compressor = make_compressor();
-  Room<std::uint32_t> codes;
-  Room<std::uint8_t> plane;
-  Room<std::uint8_t> frame;
+  Buffer<std::uint32_t> codes;
+  Buffer<std::uint8_t> plane;
+  Buffer<std::uint8_t> frame;
 };
 
-void put_compressed(Bytes& bytes, Packing& packing) {
-  const std::span frame = packing.frame.all();
-  const std::span plane = packing.plane.all();
-  const std::size_t size = ZSTD_compress2(packing.compressor.get(), frame.data(), frame.size(),
+void put_compressed(Bytes& bytes, PackingBuffers& buffers) {
+  const std::span frame = buffers.frame.span();
+  const std::span plane = buffers.plane.span();
+  const std::size_t size = ZSTD_compress2(buffers.compressor.get(), frame.data(), frame.size(),
                                           plane.data(), plane.size());
   if (ZSTD_isError(size) != 0) refuse_to_compress(size);
   put(bytes, static_cast<std::uint32_t>(size));
@@ -223,24 +223,24 @@ void take_differences(std::span<const std::int32_t> steps, int differences,
   }
 }
 
-/// Writes the lowest bytes of all codes as one plane, then the next bytes, as many planes as the
-/// largest code has bytes. Each plane has its own statistics and so gets its own code table.
-void put_channel(Bytes& bytes, Packing& packing) {
-  const std::span codes = packing.codes.all();
+/// Writes the lowest bytes of all codes as one plane, then the next bytes, up to the highest byte
+/// of the largest code. Each plane has its own statistics and therefore gets its own code table.
+void put_channel(Bytes& bytes, PackingBuffers& buffers) {
+  const std::span codes = buffers.codes.span();
   std::uint32_t all_bits = 0;
   for (const std::uint32_t code : codes) all_bits |= code;
   const auto planes = static_cast<unsigned>((std::bit_width(all_bits) + 7) / 8);
   bytes.push_back(static_cast<std::uint8_t>(planes));
   for (unsigned p = 0; p < planes; ++p) {
-    std::transform(codes.begin(), codes.end(), packing.plane.all().begin(),
+    std::transform(codes.begin(), codes.end(), buffers.plane.span().begin(),
                    [p](std::uint32_t code) { return static_cast<std::uint8_t>(code >> (8U * p)); });
-    put_compressed(bytes, packing);
+    put_compressed(bytes, buffers);
   }
 }
 
 unsigned read_plane_count(Cursor& cursor) {
   const unsigned planes = cursor.number<std::uint8_t>();
-  if (planes > kMaxPlanes) refuse_bytes("a channel has too many bytes a number");
+  if (planes > kMaxPlanes) refuse_bytes("a channel has too many bytes per number");
   return planes;
 }
 
@@ -248,18 +248,18 @@ ByteView read_frame(Cursor& cursor) {
   return cursor.take(cursor.number<std::uint32_t>());
 }
 
-/// Checks the parts' own lengths before memory is allocated for the claimed number of samples.
+/// Checks the parts' lengths before memory is allocated for the stated number of samples.
 void require_consistent(Cursor cursor, std::size_t count) {
   for (std::size_t channel = 0; channel < kChannels.size(); ++channel) {
     const unsigned planes = read_plane_count(cursor);
     for (unsigned p = 0; p < planes; ++p) {
       const ByteView frame = read_frame(cursor);
       if (ZSTD_getFrameContentSize(frame.data(), frame.size()) != count) {
-        refuse_bytes("a part has another length than its samples");
+        refuse_bytes("a part's length differs from the number of samples");
       }
     }
   }
-  if (!cursor.at_end()) refuse_bytes("it has bytes after its end");
+  if (!cursor.at_end()) refuse_bytes("it has bytes after its last part");
 }
 
 void read_plane(Cursor& cursor, Bytes& plane) {
@@ -269,7 +269,7 @@ void read_plane(Cursor& cursor, Bytes& plane) {
   if (ZSTD_isError(size) != 0 || size != plane.size()) refuse_bytes("a part does not decompress");
 }
 
-/// The channel's differences, still zigzag codes.
+/// Reads the channel's differences, as zigzag codes.
 std::vector<std::uint32_t> read_codes(Cursor& cursor, std::size_t count) {
   const unsigned planes = read_plane_count(cursor);
   std::vector<std::uint32_t> codes(count, 0);
@@ -288,10 +288,10 @@ void restore_channel(const Channel& channel, std::span<const std::uint32_t> code
   std::int64_t slope = 0;
   for (std::size_t i = 0; i < codes.size(); ++i) {
     const std::int64_t code = unzigzag(codes[i]);
-    // The first sample is stored itself; second differences start at the second sample.
+    // The first code is the sample itself; second differences start at the third sample.
     slope = channel.differences == 2 && i > 1 ? slope + code : code;
     step += slope;
-    if (step < -limit || step > limit) refuse_bytes("a sample is beyond 10 m or 100 N");
+    if (step < -limit || step > limit) refuse_bytes("a sample exceeds 10 m or 100 N");
     (samples[i].*channel.vector).*channel.component =
         static_cast<double>(step) / channel.steps_per_unit;
   }
@@ -311,12 +311,12 @@ Bytes encode_trace(const Trace& trace) {
   put(bytes, std::bit_cast<std::uint64_t>(trace.rate_hz));
   put(bytes, static_cast<std::uint32_t>(trace.samples.size()));
   const std::size_t count = trace.samples.size();
-  const Room<std::int32_t> steps = quantised(trace.samples);
-  Packing packing(count);
+  const Buffer<std::int32_t> steps = quantise(trace.samples);
+  PackingBuffers buffers(count);
   for (std::size_t c = 0; c < kNumbers; ++c) {
-    take_differences(steps.all().subspan(c * count, count), kChannels[c].differences,
-                     packing.codes.all());
-    put_channel(bytes, packing);
+    take_differences(steps.span().subspan(c * count, count), kChannels[c].differences,
+                     buffers.codes.span());
+    put_channel(bytes, buffers);
   }
   return bytes;
 }
@@ -325,13 +325,13 @@ Trace decode_trace(ByteView bytes) {
   Cursor cursor(bytes);
   const ByteView magic = cursor.take(kTraceMagic.size());
   if (!std::equal(magic.begin(), magic.end(), kTraceMagic.begin()))
-    refuse_bytes("its mark is missing");
+    refuse_bytes("its magic number is missing");
   Trace trace;
   trace.rate_hz = std::bit_cast<double>(cursor.number<std::uint64_t>());
   if (!std::isfinite(trace.rate_hz) || trace.rate_hz <= 0.0)
     refuse_bytes("its rate is not positive");
   const std::size_t count = cursor.number<std::uint32_t>();
-  if (count > kMaxSamples) refuse_bytes("it claims more than 10,000,000 samples");
+  if (count > kMaxSamples) refuse_bytes("it states more than 10,000,000 samples");
   require_consistent(cursor, count);
   trace.samples.resize(count);
   for (const Channel& channel : kChannels) {
@@ -341,9 +341,9 @@ Trace decode_trace(ByteView bytes) {
 }
 
 std::size_t trace_padding(std::size_t sample_count) {
-  constexpr std::size_t kBytesAStep = 2048 + 8 * kPaddingStep;
+  constexpr std::size_t kBytesPerStep = 2048 + 8 * kPaddingStep;
   const std::size_t count = std::clamp(sample_count, std::size_t{1}, kMaxSamples);
-  return kBytesAStep * ((count + kPaddingStep - 1) / kPaddingStep);
+  return kBytesPerStep * ((count + kPaddingStep - 1) / kPaddingStep);
 }
 
 }  // namespace touchtrial::record

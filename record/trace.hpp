@@ -14,7 +14,7 @@ struct TraceSample {
   Vec3 force_n;  ///< as sent to the device
 };
 
-/// Evenly sampled from plane-on.
+/// Samples at equal intervals, from plane-on.
 struct Trace {
   double rate_hz = 1000.0;
   std::vector<TraceSample> samples;
@@ -22,10 +22,11 @@ struct Trace {
 
 /// Quantises a trace (positions to 1 um, forces to 1/4096 N), takes differences, and compresses
 /// them with zstd level 1. The result is not encrypted.
-/// \throws StoreError if a sample is not finite or beyond +-10 m or +-100 N
+/// \throws StoreError if a sample is not finite or exceeds 10 m or 100 N
 [[nodiscard]] Bytes encode_trace(const Trace& trace);
 
-/// \throws StoreError if the bytes are not a trace, are truncated, or claim an absurd length
+/// Restores a trace from the bytes of encode_trace.
+/// \throws StoreError if the bytes are not a trace, are truncated, or state an impossible length
 [[nodiscard]] Trace decode_trace(ByteView bytes);
 
 /// The padding under which traces are sealed, in bytes. It depends only on the number of samples in

@@ -57,9 +57,10 @@ StimulusEntry entry_from(const Json& json) {
                            "; generate the stimuli again"));
 }
 
-/// Runs `read`; if it fails, refuses with the file and the place.
+/// Calls `read` and adds the file and the JSON pointer to its errors.
 template <typename Read>
-auto located(const std::filesystem::path& path, const std::string& pointer, const Read& read) {
+auto with_located_errors(const std::filesystem::path& path, const std::string& pointer,
+                         const Read& read) {
   try {
     return read();
   } catch (const nlohmann::json::exception& error) {
@@ -75,14 +76,15 @@ std::string file_of(std::string_view label, int exemplar) {
   return "exemplars/" + name + "-" + std::to_string(exemplar) + ".png";
 }
 
-/// The entries of the pictures to make, without their digests.
-std::vector<StimulusEntry> chosen_entries(const StimuliChoice& choice) {
+/// The entries of the pictures to generate, without digests.
+std::vector<StimulusEntry> entries_to_generate(const StimuliChoice& choice) {
   std::vector<StimulusEntry> entries;
   for (const StimulusRecipe& recipe : stimulus_recipes()) {
     if (choice.kind && recipe.kind != *choice.kind) continue;
-    const bool is_single = recipe.kind == StimulusKind::flat;
-    const int wanted = is_single ? 1 : choice.exemplars.value_or(shipped_exemplars(recipe.kind));
-    for (int exemplar = 1; exemplar <= wanted; ++exemplar) {
+    const bool has_one_exemplar = recipe.kind == StimulusKind::flat;
+    const int count =
+        has_one_exemplar ? 1 : choice.exemplars.value_or(shipped_exemplars(recipe.kind));
+    for (int exemplar = 1; exemplar <= count; ++exemplar) {
       StimulusEntry& entry = entries.emplace_back();
       entry.label = recipe.label;
       entry.kind = recipe.kind;
@@ -95,12 +97,13 @@ std::vector<StimulusEntry> chosen_entries(const StimuliChoice& choice) {
   return entries;
 }
 
-/// \param is_earlier  the file is from an earlier set, even if its mark is missing, as in a copy
-void write_stimulus(const std::filesystem::path& folder, StimulusEntry& entry, bool is_earlier) {
+/// \param may_replace  whether to replace a file without the output mark, as in a copy of an
+///   earlier set
+void write_stimulus(const std::filesystem::path& folder, StimulusEntry& entry, bool may_replace) {
   const GreyImage picture =
       generate_stimulus(entry.label, entry.seed, entry.size_px, entry.exemplar);
   make_folder((folder / entry.file).parent_path());
-  if (is_earlier && origin_of(folder / entry.file) != Origin::ours) {
+  if (may_replace && origin_of(folder / entry.file) != Origin::ours) {
     std::filesystem::remove(folder / entry.file);
   }
   engine::write_png(folder / entry.file, picture);
@@ -109,44 +112,47 @@ void write_stimulus(const std::filesystem::path& folder, StimulusEntry& entry, b
 }
 
 /// The manifest of an earlier set in the folder; empty if there is none or it is a foreign file.
-StimulusManifest earlier_set(const std::filesystem::path& folder) {
+StimulusManifest read_earlier_manifest(const std::filesystem::path& folder) {
   const auto manifest = folder / kStimulusManifestFile;
-  require_output_place(manifest);
+  require_output_path(manifest);
   try {
-    return is_there(manifest) ? read_stimulus_manifest(manifest) : StimulusManifest{};
+    return path_exists(manifest) ? read_stimulus_manifest(manifest) : StimulusManifest{};
   } catch (const FileError&) {
     return {};
   }
 }
 
-/// Whether the file is from an earlier set and unchanged since.
-bool is_of(const StimulusManifest& earlier, const std::string& file,
-           const std::filesystem::path& folder) {
-  const auto entry = std::ranges::find(earlier.entries, file, &StimulusEntry::file);
-  return entry != earlier.entries.end() && is_there(folder / file) &&
+/// Whether the file belongs to an earlier set and is unchanged.
+bool is_unchanged(const StimulusManifest& earlier_manifest, const std::string& file,
+                  const std::filesystem::path& folder) {
+  const auto entry = std::ranges::find(earlier_manifest.entries, file, &StimulusEntry::file);
+  return entry != earlier_manifest.entries.end() && path_exists(folder / file) &&
          sha256_of_file(folder / file) == entry->sha256;
 }
 
-bool lists(const StimulusManifest& manifest, const std::string& file) {
+bool contains_file(const StimulusManifest& manifest, const std::string& file) {
   return std::ranges::find(manifest.entries, file, &StimulusEntry::file) != manifest.entries.end();
 }
 
-void require_places(const std::filesystem::path& folder, const StimulusManifest& earlier,
-                    const StimulusManifest& wanted) {
-  for (const StimulusEntry& entry : wanted.entries) {
-    if (!is_of(earlier, entry.file, folder)) require_output_place(folder / entry.file);
+void require_output_paths(const std::filesystem::path& folder,
+                          const StimulusManifest& earlier_manifest,
+                          const StimulusManifest& manifest) {
+  for (const StimulusEntry& entry : manifest.entries) {
+    if (!is_unchanged(earlier_manifest, entry.file, folder))
+      require_output_path(folder / entry.file);
   }
 }
 
 /// Removes the pictures that only the earlier set has, unless they were changed.
-void remove_left_over(const std::filesystem::path& folder, const StimulusManifest& earlier,
-                      const StimulusManifest& made) {
-  for (const StimulusEntry& entry : earlier.entries) {
+void remove_obsolete(const std::filesystem::path& folder, const StimulusManifest& earlier_manifest,
+                     const StimulusManifest& new_manifest) {
+  for (const StimulusEntry& entry : earlier_manifest.entries) {
     const auto file = folder / entry.file;
-    const bool ours = std::ranges::find(stimulus_recipes(), entry.label, &StimulusRecipe::label) !=
-                          stimulus_recipes().end() &&
-                      entry.file == file_of(entry.label, entry.exemplar);
-    if (!ours || lists(made, entry.file) || !is_there(file)) continue;
+    const bool is_generated =
+        std::ranges::find(stimulus_recipes(), entry.label, &StimulusRecipe::label) !=
+            stimulus_recipes().end() &&
+        entry.file == file_of(entry.label, entry.exemplar);
+    if (!is_generated || contains_file(new_manifest, entry.file) || !path_exists(file)) continue;
     if (sha256_of_file(file) == entry.sha256) std::filesystem::remove(file);
   }
 }
@@ -164,9 +170,10 @@ void write_stimulus_manifest(const std::filesystem::path& path, const StimulusMa
 
 StimulusManifest read_stimulus_manifest(const std::filesystem::path& path) {
   const Bytes bytes = read_file(path);
-  const Json json = located(path, "", [&] { return Json::parse(bytes.begin(), bytes.end()); });
+  const Json json =
+      with_located_errors(path, "", [&] { return Json::parse(bytes.begin(), bytes.end()); });
   StimulusManifest manifest;
-  const Json stimuli = located(path, "", [&] {
+  const Json stimuli = with_located_errors(path, "", [&] {
     if (json.at("format") != kFormat) throw FileError("is not a manifest of stimuli");
     manifest.generator_version = json.at("generator_version").get<int>();
     manifest.licence = json.at("licence").get<std::string>();
@@ -174,7 +181,8 @@ StimulusManifest read_stimulus_manifest(const std::filesystem::path& path) {
   });
   for (std::size_t i = 0; i < stimuli.size(); ++i) {
     const std::string pointer = "/stimuli/" + std::to_string(i);
-    manifest.entries.push_back(located(path, pointer, [&] { return entry_from(stimuli.at(i)); }));
+    manifest.entries.push_back(
+        with_located_errors(path, pointer, [&] { return entry_from(stimuli.at(i)); }));
   }
   return manifest;
 }
@@ -185,21 +193,21 @@ StimulusManifest generate_default_stimuli(const std::filesystem::path& folder,
   const int exemplars = choice.exemplars.value_or(1);
   if (exemplars < 1 || exemplars > kMaxStimulusExemplars) {
     throw UsageError("a set of " + std::to_string(exemplars) +
-                     " exemplars of each label cannot be made; choose 1 to " +
+                     " exemplars of each label cannot be generated; choose 1 to " +
                      std::to_string(kMaxStimulusExemplars));
   }
   StimulusManifest manifest;
-  manifest.entries = chosen_entries(choice);
-  const StimulusManifest earlier = earlier_set(folder);
-  require_places(folder, earlier, manifest);
+  manifest.entries = entries_to_generate(choice);
+  const StimulusManifest earlier_manifest = read_earlier_manifest(folder);
+  require_output_paths(folder, earlier_manifest, manifest);
   make_folder(folder);
-  int done = 0;
+  int done_count = 0;
   for (StimulusEntry& entry : manifest.entries) {
-    write_stimulus(folder, entry, is_of(earlier, entry.file, folder));
-    if (progress) progress(++done, static_cast<int>(manifest.entries.size()));
+    write_stimulus(folder, entry, is_unchanged(earlier_manifest, entry.file, folder));
+    if (progress) progress(++done_count, static_cast<int>(manifest.entries.size()));
   }
   write_stimulus_manifest(folder / kStimulusManifestFile, manifest);
-  remove_left_over(folder, earlier, manifest);
+  remove_obsolete(folder, earlier_manifest, manifest);
   return manifest;
 }
 

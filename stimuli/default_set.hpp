@@ -1,5 +1,5 @@
-/// \file The default pictures as files in a folder, and manifest.json, which describes them and how
-///   to reproduce them.
+/// \file Writes the default pictures to a folder, with manifest.json, which describes them and how
+/// to reproduce them.
 #pragma once
 
 #include "core/hash.hpp"
@@ -28,7 +28,7 @@ struct StimulusEntry {
   std::uint64_t seed = 0;
   int size_px = 0;
   Digest sha256{};         ///< of the file
-  Digest pixels_sha256{};  ///< of the grey levels, row-major: the same on every machine
+  Digest pixels_sha256{};  ///< of the grey levels, row-major; equal on every machine
 
   friend bool operator==(const StimulusEntry&, const StimulusEntry&) = default;
 };
@@ -47,32 +47,31 @@ struct StimulusManifest {
 void write_stimulus_manifest(const std::filesystem::path& path, const StimulusManifest& manifest);
 
 /// \param path  of the file
-/// \throws FileError if the file is missing or not JSON, or a key is missing or misspelt; the
-///   message holds the JSON pointer
+/// \throws FileError naming the JSON pointer if the file is missing or not JSON, or a key is
+///   missing or misspelt
 [[nodiscard]] StimulusManifest read_stimulus_manifest(const std::filesystem::path& path);
 
 /// Called after each picture, for a progress bar.
 using StimuliProgress = std::function<void(int done, int total)>;
 
-/// Which pictures to make.
+/// The pictures to generate.
 struct StimuliChoice {
   std::uint64_t seed = kDefaultStimuliSeed;
   int size_px = kDefaultStimulusSizePx;
-  /// Exemplars of each label; empty: as many as the shipped set has. A flat label has one only.
+  /// Exemplars per label; empty: as in the shipped set. A flat label has only one.
   std::optional<int> exemplars;
-  /// Only pictures of this kind; empty: of every kind.
+  /// The kind of pictures; empty: all kinds.
   std::optional<StimulusKind> kind{};
 };
 
-/// Makes every recipe of the chosen kind and writes it as <label>.png, further exemplars as
-/// exemplars/<label>-<number>.png, and manifest.json last. Each file replaces an older one of the
-/// same set only when it is complete. Then removes unchanged pictures that only the older set had.
-/// Other files in the folder are unchanged.
-/// \param folder  is made if it does not exist
-/// \return the manifest that was written; its entries are in the order of `stimulus_recipes()`,
-///   exemplars of a label together
-/// \throws FileError if the folder or a file cannot be written, an older manifest cannot be read,
-///   or a foreign file has a picture's name
+/// Generates the chosen pictures as <label>.png, further exemplars as
+/// exemplars/<label>-<number>.png, and manifest.json last. Replaces each file of an earlier set
+/// only by a complete new one. Then removes unchanged pictures of the earlier set that the new set
+/// lacks. Leaves other files unchanged.
+/// \param folder  created if it does not exist
+/// \return the manifest; its entries are in the order of `stimulus_recipes()`, grouped by label
+/// \throws FileError if the folder or a file cannot be written, or a foreign file has a picture's
+///   name
 /// \throws UsageError if the size or the number of exemplars is out of range
 StimulusManifest generate_default_stimuli(const std::filesystem::path& folder,
                                           const StimuliChoice& choice = {},

@@ -65,8 +65,8 @@ std::optional<StimulusKind> stimulus_kind_from_name(std::string_view name) {
 }
 
 int shipped_exemplars(StimulusKind kind) {
-  constexpr int kOfTextures = 5;
-  return kind == StimulusKind::texture ? kOfTextures : 1;
+  constexpr int kTextureExemplars = 5;
+  return kind == StimulusKind::texture ? kTextureExemplars : 1;
 }
 
 GreyImage make_flat(const Specimen& /*specimen*/, int size_px) {
@@ -81,9 +81,9 @@ std::span<const StimulusRecipe> stimulus_recipes() {
 GreyImage generate_stimulus(std::string_view label, std::uint64_t seed, int size_px, int exemplar) {
   const Maker make = maker_of(label);
   if (size_px < kMinStimulusSizePx || size_px > kMaxStimulusSizePx) {
-    throw UsageError("a stimulus of " + std::to_string(size_px) +
-                     " pixels a side cannot be made; choose " + std::to_string(kMinStimulusSizePx) +
-                     " to " + std::to_string(kMaxStimulusSizePx));
+    throw UsageError("a stimulus cannot have a side of " + std::to_string(size_px) +
+                     " pixels; choose " + std::to_string(kMinStimulusSizePx) + " to " +
+                     std::to_string(kMaxStimulusSizePx));
   }
   if (exemplar < 1 || exemplar > kMaxStimulusExemplars) {
     throw UsageError("there is no exemplar " + std::to_string(exemplar) + "; choose 1 to " +

@@ -8,7 +8,7 @@
 namespace touchtrial::stimuli {
 namespace {
 
-/// Avoids sine and cosine, whose last digit differs between mathematical libraries.
+/// Avoids sine and cosine, whose last digit differs between libraries.
 Vec2 random_direction(RandomStream& random) {
   while (true) {
     const Vec2 v{random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)};
@@ -57,7 +57,8 @@ double Noise::fractal(double x, double y, int octaves) const noexcept {
   for (int octave = 0; octave < octaves; ++octave) {
     sum += strength * at(x, y);
     strength *= 0.5;
-    // Slightly off a factor of two, with a shift, so that the lattices of octaves never align.
+    // The factor is slightly off two, and there is a shift, so that lattices of octaves never
+    // align.
     x = 2.03 * x + 17.3;
     y = 2.03 * y + 31.7;
   }
@@ -79,12 +80,12 @@ double Noise::ridged(double x, double y, int octaves) const noexcept {
   return sum / total;
 }
 
-CellPlace Cells::at(double x, double y) const noexcept {
+CellPosition Cells::at(double x, double y) const noexcept {
   const double column = std::floor(x);
   const double row = std::floor(y);
-  CellPlace place;
-  double nearest = 1e9;
-  double second = 1e9;
+  CellPosition position;
+  double nearest_squared = 1e9;
+  double second_squared = 1e9;
   for (int down = -2; down <= 2; ++down) {
     for (int right = -2; right <= 2; ++right) {
       const std::uint32_t hash = lattice_.hash(static_cast<std::int64_t>(column) + right,
@@ -92,18 +93,18 @@ CellPlace Cells::at(double x, double y) const noexcept {
       const double dx = column + right + 0.5 + jitter_ * (lattice_.value(hash) - 0.5) - x;
       const double dy = row + down + 0.5 + jitter_ * (lattice_.value(hash * 5 + 3) - 0.5) - y;
       const double squared = dx * dx + dy * dy;
-      if (squared < nearest) {
-        second = nearest;
-        nearest = squared;
-        place.cell = hash;
-      } else if (squared < second) {
-        second = squared;
+      if (squared < nearest_squared) {
+        second_squared = nearest_squared;
+        nearest_squared = squared;
+        position.cell = hash;
+      } else if (squared < second_squared) {
+        second_squared = squared;
       }
     }
   }
-  place.to_centre = std::sqrt(nearest);
-  place.to_border = std::sqrt(second) - place.to_centre;
-  return place;
+  position.to_centre = std::sqrt(nearest_squared);
+  position.to_border = std::sqrt(second_squared) - position.to_centre;
+  return position;
 }
 
 }  // namespace touchtrial::stimuli

@@ -1,7 +1,6 @@
-/// \file Irregularity: gradient noise and cells, identical on every machine for the same seed.
-/// Sources: K. Perlin, "Improving noise", 2002; S. Worley, "A cellular texture basis function",
-/// 1996. They use only additions, products and square roots, which all processors round
-///   identically.
+/// \file Gradient noise and cellular noise, identical on every machine for the same seed. Sources:
+/// K. Perlin, "Improving noise", 2002; S. Worley, "A cellular texture basis function", 1996. Uses
+/// only additions, products and square roots, which all processors round identically.
 #pragma once
 
 #include "core/vec.hpp"
@@ -13,7 +12,7 @@
 
 namespace touchtrial::stimuli {
 
-/// A hashed lattice of random numbers, which repeats only after a thousand cells.
+/// A hashed lattice of random numbers, with a period of 1024 cells.
 class Lattice {
  public:
   Lattice(std::uint64_t seed, std::string_view purpose);
@@ -36,26 +35,26 @@ class Lattice {
   std::vector<Vec2> directions_;
 };
 
-/// Smooth noise with features about one unit wide, mean 0, roughly within -1 .. 1. Thread-safe.
+/// Gradient noise with features about one unit wide, mean 0, roughly within -1 .. 1. Thread-safe.
 class Noise {
  public:
   Noise(std::uint64_t seed, std::string_view purpose) : lattice_(seed, purpose) {}
 
   [[nodiscard]] double at(double x, double y) const noexcept;
-  /// A sum of octaves of noise, each about half as wide and half as strong as the one before.
+  /// A sum of octaves, each with half the width and half the strength of the previous one.
   [[nodiscard]] double fractal(double x, double y, int octaves) const noexcept;
-  /// The same with sharp crests: 1 on a crest, about 0 between.
+  /// The same with sharp crests: 1 on a crest, about 0 between crests.
   [[nodiscard]] double ridged(double x, double y, int octaves) const noexcept;
 
  private:
   Lattice lattice_;
 };
 
-/// The place of a point among cells about one unit wide.
-struct CellPlace {
+/// The position of a point among cells about one unit wide.
+struct CellPosition {
   double to_centre = 0.0;  ///< distance to the nearest centre
   double to_border = 0.0;  ///< distance to the second nearest, minus to_centre; 0 on a border
-  std::uint32_t cell = 0;  ///< a random number that belongs to the cell, in [0, Lattice::kSize)
+  std::uint32_t cell = 0;  ///< random number of the cell, in [0, Lattice::kSize)
 };
 
 /// Irregular cells around jittered lattice points. Thread-safe.
@@ -65,8 +64,8 @@ class Cells {
   Cells(std::uint64_t seed, std::string_view purpose, double jitter = 0.9)
       : lattice_(seed, purpose), jitter_(jitter) {}
 
-  [[nodiscard]] CellPlace at(double x, double y) const noexcept;
-  /// A number in [0, 1) for a cell, another for each `trait`.
+  [[nodiscard]] CellPosition at(double x, double y) const noexcept;
+  /// A number in [0, 1) for each cell and trait.
   [[nodiscard]] double value(std::uint32_t cell, std::uint32_t trait = 0) const noexcept {
     return lattice_.value(cell * 7 + trait * 131);
   }
@@ -76,15 +75,15 @@ class Cells {
   double jitter_;
 };
 
-/// 0 up to `start`, 1 from `end` on, smooth in between; `end` may be the smaller one.
+/// 0 up to `start`, 1 from `end`, smooth in between; `end` may be smaller than `start`.
 [[nodiscard]] constexpr double smooth_step(double start, double end, double x) noexcept {
   const double t = std::clamp((x - start) / (end - start), 0.0, 1.0);
   return t * t * (3.0 - 2.0 * t);
 }
 
-/// `from` at t = 0, `to` at t = 1.
-[[nodiscard]] constexpr double mix(double from, double to, double t) noexcept {
-  return from + (to - from) * t;
+/// Linear interpolation: `start` at t = 0, `end` at t = 1.
+[[nodiscard]] constexpr double mix(double start, double end, double t) noexcept {
+  return start + (end - start) * t;
 }
 
 }  // namespace touchtrial::stimuli

@@ -1,4 +1,4 @@
-/// \file The makers of the default pictures, one for each label.
+/// \file The functions that draw the default pictures, one per label.
 #pragma once
 
 #include "core/plane.hpp"
@@ -6,8 +6,8 @@
 
 namespace touchtrial::stimuli {
 
-/// Each makes a square picture of `size_px` pixels a side. The features of a texture have the same
-/// size in a picture of any size; objects grow with the picture.
+/// Each draws a square picture with a side of `size_px` pixels. Texture features do not depend on
+/// that size; objects scale with it.
 [[nodiscard]] GreyImage make_bark(const Specimen& specimen, int size_px);
 [[nodiscard]] GreyImage make_cloth(const Specimen& specimen, int size_px);
 [[nodiscard]] GreyImage make_pebbles(const Specimen& specimen, int size_px);
@@ -24,7 +24,7 @@ namespace touchtrial::stimuli {
 [[nodiscard]] GreyImage make_sand(const Specimen& specimen, int size_px);
 [[nodiscard]] GreyImage make_leather(const Specimen& specimen, int size_px);
 [[nodiscard]] GreyImage make_cork(const Specimen& specimen, int size_px);
-/// One grey everywhere, for any specimen.
+/// Uniform grey, for any specimen.
 [[nodiscard]] GreyImage make_flat(const Specimen& specimen, int size_px);
 
 }  // namespace touchtrial::stimuli

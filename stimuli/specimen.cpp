@@ -7,7 +7,7 @@
 namespace touchtrial::stimuli {
 namespace {
 
-/// Successive multiples of the golden ratio's fraction fill a range evenly.
+/// Multiples of the golden ratio's fraction fill a range evenly.
 constexpr double kGoldenStep = 0.6180339887498949;
 
 }  // namespace
@@ -22,13 +22,13 @@ Specimen::Specimen(std::uint64_t seed, int exemplar)
 
 double Specimen::shift(std::string_view trait, double spread) const {
   if (exemplar_ == 1) return 0.0;
-  const double place = RandomStream(seed_, trait).uniform() + kGoldenStep * exemplar_;
-  return spread * (2.0 * (place - std::floor(place)) - 1.0);
+  const double position = RandomStream(seed_, trait).uniform() + kGoldenStep * exemplar_;
+  return spread * (2.0 * (position - std::floor(position)) - 1.0);
 }
 
 double Specimen::factor(std::string_view trait, double spread) const {
-  const double departure = shift(trait, spread);
-  return departure < 0.0 ? 1.0 / (1.0 - departure) : 1.0 + departure;
+  const double deviation = shift(trait, spread);
+  return deviation < 0.0 ? 1.0 / (1.0 - deviation) : 1.0 + deviation;
 }
 
 Vec2 Specimen::turn(std::string_view trait, double spread) const {

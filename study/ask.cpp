@@ -8,9 +8,9 @@
 namespace touchtrial::study {
 namespace {
 
-std::string mismatch_of_choice(const Chosen& chosen, std::size_t choices) {
+std::string mismatch_of_choice(const ChoiceAnswer& choice, std::size_t choices) {
   for (const std::optional<int>& position :
-       {std::optional(chosen.position), chosen.first_position}) {
+       {std::optional(choice.position), choice.first_position}) {
     if (!position || (*position >= 0 && *position < static_cast<int>(choices))) continue;
     return fmt::format("chooses position {}, but the screen has {}", *position,
                        choices == 0 ? "none" : fmt::format("0 to {}", choices - 1));
@@ -18,12 +18,13 @@ std::string mismatch_of_choice(const Chosen& chosen, std::size_t choices) {
   return "";
 }
 
-std::string mismatch_of_ratings(const Rated& rated, const std::vector<Scale>& scales) {
-  if (rated.values.size() != scales.size()) {
-    return fmt::format("has {} ratings for {} scales", rated.values.size(), scales.size());
+std::string mismatch_of_ratings(const RatingAnswer& rating_answer,
+                                const std::vector<Scale>& scales) {
+  if (rating_answer.values.size() != scales.size()) {
+    return fmt::format("has {} ratings for {} scales", rating_answer.values.size(), scales.size());
   }
   for (std::size_t i = 0; i < scales.size(); ++i) {
-    const double value = rated.values[i];
+    const double value = rating_answer.values[i];
     if (value >= scales[i].min() && value <= scales[i].max()) continue;
     return fmt::format("rates {} on scale {}, which runs from {} to {}", value, scales[i].id,
                        scales[i].min(), scales[i].max());
@@ -33,11 +34,11 @@ std::string mismatch_of_ratings(const Rated& rated, const std::vector<Scale>& sc
 
 }  // namespace
 
-std::string mismatch_of(const Answer& answer, const Ask& ask) {
-  if (const auto* const chosen = std::get_if<Chosen>(&answer)) {
-    return mismatch_of_choice(*chosen, ask.choices().size());
+std::string mismatch_of(const Answer& answer, const TrialQuestion& question) {
+  if (const auto* const choice = std::get_if<ChoiceAnswer>(&answer)) {
+    return mismatch_of_choice(*choice, question.choices().size());
   }
-  return mismatch_of_ratings(std::get<Rated>(answer), ask.scales());
+  return mismatch_of_ratings(std::get<RatingAnswer>(answer), question.scales());
 }
 
 }  // namespace touchtrial::study

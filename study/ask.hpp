@@ -13,8 +13,8 @@
 
 namespace touchtrial::study {
 
-/// The position of a trial in a session. It is stored unencrypted, because it depends only on the
-/// participant's secret and the number of earlier trials, never on an answer.
+/// The position of a trial in a session. It may be stored unencrypted, because it depends only on
+/// the participant's secret and the number of earlier trials, never on an answer.
 struct Place {
   int trial = 0;          ///< from 1
   int block = 0;          ///< from 0
@@ -40,37 +40,37 @@ inline constexpr double kLiftedMm = 1.0;
 /// Time in which a plane's force fades to zero when its exploration ends.
 inline constexpr std::chrono::milliseconds kFade{100};
 
-/// Exploration for as long as the participant wants, up to the study's explore_limit_s. If the
-/// trial has one plane, the participant may feel it again before answering.
-struct Free {};
+/// Exploration without a fixed time, up to the study's explore_limit_s. If the trial has one plane,
+/// the participant may feel it again before answering.
+struct FreeExploration {};
 
 /// Exploration for a fixed time, counted only in contact and within the range, after which the hand
 /// lifts off. A trial is repeated if a clock has not run down within the study's explore_limit_s.
 /// Source: docs/thresholds.md, "Intervals".
-struct InContact {
+struct TimedContact {
   double seconds = 2.5;  ///< > 0
   HandRange range{};
 };
 
 /// A circular stroke in the plane, whose lateral forces the device plays while the hand is off it.
-struct Played {
+struct PlayedStroke {
   double seconds = 2.5;  ///< > 0
 };
 
-// The speed of that stroke, which the instructions ask for, and its load.
+// The speed of that stroke, which the instructions request, and its load.
 inline constexpr double kPlayedMmS = 100.0;
 inline constexpr double kPlayedLoadN = 0.7;
 
-using Exploring = std::variant<Free, InContact, Played>;
+using ExplorationMode = std::variant<FreeExploration, TimedContact, PlayedStroke>;
 
 /// One of the alternatives that a participant chooses between.
 struct Choice {
   std::string label;
-  std::optional<int> class_index{};  ///< the class whose picture is shown; empty: the label alone
+  std::optional<int> class_index{};  ///< the class whose picture is shown; empty: only the label
 };
 
 /// Asks for one of two or more alternatives.
-struct Choose {
+struct ChoiceQuestion {
   /// Key of the title in the texts' "screens", or the title itself; empty: "which picture is it?".
   std::string title{};
   std::vector<Choice> choices;
@@ -85,9 +85,9 @@ struct Choose {
 struct Scale {
   std::string id;    ///< a plain name, unique in its question
   std::string text;  ///< what is rated
-  std::string low;   ///< labels of the ends
+  std::string low;   ///< labels of the two ends
   std::string high;
-  int points = 0;  ///< 0: a line from 0 to 1; else numbers from 1 to this
+  int points = 0;  ///< 0: a line from 0 to 1; otherwise numbers from 1 to this number
 
   [[nodiscard]] double min() const noexcept { return points == 0 ? 0.0 : 1.0; }
   [[nodiscard]] double max() const noexcept { return points == 0 ? 1.0 : points; }
@@ -100,16 +100,16 @@ struct Scale {
 inline constexpr double kLineStep = 0.001;
 
 /// Asks for a rating on each of one or more scales.
-struct Rate {
+struct RatingQuestion {
   std::string title{};  ///< key of the title in the texts' "screens", or the title itself
   std::vector<Scale> scales;
 };
 
-using QuestionForm = std::variant<Choose, Rate>;
+using QuestionForm = std::variant<ChoiceQuestion, RatingQuestion>;
 
 /// What a participant does and answers in one trial.
-struct Ask {
-  Exploring exploring{};
+struct TrialQuestion {
+  ExplorationMode exploring{};
   int planes = 1;  ///< presented one after the other
   QuestionForm question{};
   int confidence_levels = 0;  ///< 0: not asked
@@ -117,30 +117,28 @@ struct Ask {
 
   /// The alternatives; empty for a question with scales.
   [[nodiscard]] std::vector<Choice> choices() const {
-    const auto* const choose = std::get_if<Choose>(&question);
-    return choose == nullptr ? std::vector<Choice>() : choose->choices;
+    const auto* const choice = std::get_if<ChoiceQuestion>(&question);
+    return choice == nullptr ? std::vector<Choice>() : choice->choices;
   }
   /// The scales; empty for a question with alternatives.
   [[nodiscard]] std::vector<Scale> scales() const {
-    const auto* const rate = std::get_if<Rate>(&question);
-    return rate == nullptr ? std::vector<Scale>() : rate->scales;
+    const auto* const rating = std::get_if<RatingQuestion>(&question);
+    return rating == nullptr ? std::vector<Scale>() : rating->scales;
   }
   /// Whether the alternatives are pictures, whose positions are randomised for each participant.
   [[nodiscard]] bool has_pictures() const noexcept {
-    const auto* const choose = std::get_if<Choose>(&question);
-    return choose != nullptr && !choose->choices.empty() &&
-           choose->choices.front().class_index.has_value();
+    const auto* const choice = std::get_if<ChoiceQuestion>(&question);
+    return choice != nullptr && !choice->choices.empty() &&
+           choice->choices.front().class_index.has_value();
   }
   /// Key of the question's title; empty: "which picture is it?".
   [[nodiscard]] const std::string& title() const noexcept {
-    return std::visit([](const auto& asked) -> const std::string& { return asked.title; },
-                      question);
+    return std::visit([](const auto& form) -> const std::string& { return form.title; }, question);
   }
 };
 
-/// Why an answer does not fit its question, as a predicate whose subject is the trial ("has 1
-/// ratings for 2 scales").
+/// Explains why an answer does not fit its question, for example "has 1 ratings for 2 scales".
 /// \return empty if it fits
-[[nodiscard]] std::string mismatch_of(const Answer& answer, const Ask& ask);
+[[nodiscard]] std::string mismatch_of(const Answer& answer, const TrialQuestion& question);
 
 }  // namespace touchtrial::study

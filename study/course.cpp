@@ -16,10 +16,10 @@ Course::Course(std::unique_ptr<Order> order, OnInterruption policy)
     throw std::invalid_argument("Course: blocks of an adaptive order cannot be restarted");
   }
   std::iota(queue_.begin(), queue_.end(), std::size_t{0});
-  choose();
+  choose_planes();
 }
 
-void Course::choose() {
+void Course::choose_planes() {
   current_.reset();
   if (!queue_.empty()) current_ = order_->at(schedule_.trials[queue_.front()]);
 }
@@ -27,13 +27,13 @@ void Course::choose() {
 void Course::finish(const std::optional<Answer>& answer) {
   if (answer) order_->answered(*current_, *answer);
   queue_.pop_front();
-  choose();
+  choose_planes();
 }
 
 std::ptrdiff_t Course::places_before_repeats(int block) const {
   if (!order_->is_adaptive()) return std::ssize(queue_);
-  const auto& all = schedule_.trials;
-  const auto is_of_block = [&](std::size_t i) { return all[i].place.block == block; };
+  const auto& trials = schedule_.trials;
+  const auto is_of_block = [&](std::size_t i) { return trials[i].place.block == block; };
   return std::ranges::find_if_not(queue_, is_of_block) - queue_.begin();
 }
 
@@ -44,48 +44,47 @@ void Course::interrupt() {
     case OnInterruption::repeat:
       queue_.pop_front();
       queue_.insert(queue_.begin() + places_before_repeats(current_->place.block), interrupted);
-      choose();
+      choose_planes();
       return;
     case OnInterruption::leave_out:
       queue_.pop_front();
-      choose();
+      choose_planes();
       return;
     case OnInterruption::restart_block:
-      to_restart_ = current_->place.block;
+      block_to_restart_ = current_->place.block;
       return;
   }
 }
 
 BlockRestart Course::redrawn_block(int block) const {
   const auto number = [](const Trial& trial) { return trial.place.trial; };
-  const int last = number(*std::ranges::max_element(schedule_.trials, {}, number));
-  const auto before = restarts_.find(block);
-  return {block,
-          order_->restarted(block, before == restarts_.end() ? 0 : before->second, last + 1)};
+  const int last_number = number(*std::ranges::max_element(schedule_.trials, {}, number));
+  const auto restarts = restarts_.find(block);
+  return {block, order_->redraw_block(block, restarts == restarts_.end() ? 0 : restarts->second,
+                                      last_number + 1)};
 }
 
-void Course::restart(const BlockRestart& again) {
-  auto& all = schedule_.trials;
-  std::erase_if(queue_, [&](std::size_t i) { return all[i].place.block == again.block; });
-  for (std::size_t i = again.trials.size(); i-- > 0;) queue_.push_front(all.size() + i);
-  all.insert(all.end(), again.trials.begin(), again.trials.end());
-  ++restarts_[again.block];
-  first_trials_[again.block] = again.first_trial();
-  to_restart_.reset();
-  choose();
+void Course::restart(const BlockRestart& restarted) {
+  auto& trials = schedule_.trials;
+  std::erase_if(queue_, [&](std::size_t i) { return trials[i].place.block == restarted.block; });
+  for (std::size_t i = restarted.trials.size(); i-- > 0;) queue_.push_front(trials.size() + i);
+  trials.insert(trials.end(), restarted.trials.begin(), restarted.trials.end());
+  ++restarts_[restarted.block];
+  first_trials_[restarted.block] = restarted.first_trial();
+  block_to_restart_.reset();
+  choose_planes();
 }
 
 bool Course::is_void(int trial) const {
-  return std::ranges::any_of(schedule_.trials, [&](const Trial& one) {
-    const auto restarted = first_trials_.find(one.place.block);
-    return one.place.trial == trial && restarted != first_trials_.end() &&
-           trial < restarted->second;
+  return std::ranges::any_of(schedule_.trials, [&](const Trial& scheduled) {
+    const auto first = first_trials_.find(scheduled.place.block);
+    return scheduled.place.trial == trial && first != first_trials_.end() && trial < first->second;
   });
 }
 
-bool Course::has(int trial) const {
-  return std::ranges::any_of(schedule_.trials,
-                             [&](const Trial& one) { return one.place.trial == trial; });
+bool Course::has_trial(int trial) const {
+  return std::ranges::any_of(
+      schedule_.trials, [&](const Trial& scheduled) { return scheduled.place.trial == trial; });
 }
 
 }  // namespace touchtrial::study

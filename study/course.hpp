@@ -14,8 +14,8 @@
 
 namespace touchtrial::study {
 
-/// A block that is presented again in a fresh order and under new trial numbers, so that nothing in
-/// clear links two presentations of one stimulus.
+/// A block that is presented again in a fresh order and under new trial numbers, so that nothing
+/// unencrypted links two presentations of one stimulus.
 struct BlockRestart {
   int block = 0;
   std::vector<Trial> trials;
@@ -30,12 +30,12 @@ class Course {
   /// \throws std::invalid_argument if the policy restarts blocks and the order is adaptive
   Course(std::unique_ptr<Order> order, OnInterruption policy);
 
-  /// The schedule with which the session began, followed by the restarted blocks.
+  /// The session's initial schedule, followed by the restarted blocks.
   [[nodiscard]] const Schedule& schedule() const noexcept { return schedule_; }
   /// The trial that is running or comes next; null when all are done.
   [[nodiscard]] const Trial* current() const noexcept { return current_ ? &*current_ : nullptr; }
   /// The number of remaining trials, including the current one.
-  [[nodiscard]] int left() const noexcept { return static_cast<int>(queue_.size()); }
+  [[nodiscard]] int remaining() const noexcept { return static_cast<int>(queue_.size()); }
   [[nodiscard]] bool is_over() const noexcept { return queue_.empty(); }
   [[nodiscard]] bool is_adaptive() const noexcept { return order_->is_adaptive(); }
 
@@ -49,20 +49,20 @@ class Course {
   void interrupt();
 
   /// The block that must be restarted before anything else is presented.
-  [[nodiscard]] std::optional<int> block_to_restart() const noexcept { return to_restart_; }
-  /// Draws the next restart of a block without changing the course. The new trials are numbered
-  /// after all existing ones.
+  [[nodiscard]] std::optional<int> block_to_restart() const noexcept { return block_to_restart_; }
+  /// Draws the next restart of a block without changing the course. New trials get the next free
+  /// numbers.
   [[nodiscard]] BlockRestart redrawn_block(int block) const;
-  /// Replaces the rest of the block by the restarted block, which is presented next.
-  void restart(const BlockRestart& again);
+  /// Replaces the block's remaining trials by the restarted block, which is presented next.
+  void restart(const BlockRestart& restarted);
   /// Whether a trial's number became invalid when its block was restarted.
   [[nodiscard]] bool is_void(int trial) const;
   /// Whether the schedule has a trial of this number.
-  [[nodiscard]] bool has(int trial) const;
+  [[nodiscard]] bool has_trial(int trial) const;
 
  private:
-  /// Lets the order choose what the next trial presents.
-  void choose();
+  /// Lets the order choose the next trial's planes.
+  void choose_planes();
   /// The number of queued trials that precede the repetition of an interrupted trial of this block.
   [[nodiscard]] std::ptrdiff_t places_before_repeats(int block) const;
 
@@ -72,8 +72,8 @@ class Course {
   std::deque<std::size_t> queue_;  ///< indices into the schedule, current one first
   std::optional<Trial> current_;
   std::map<int, int> restarts_;      ///< number of restarts, by block
-  std::map<int, int> first_trials_;  ///< first trial of the last restart, by block
-  std::optional<int> to_restart_;
+  std::map<int, int> first_trials_;  ///< number of the first trial of the last restart, by block
+  std::optional<int> block_to_restart_;
 };
 
 }  // namespace touchtrial::study

@@ -14,7 +14,7 @@ inline constexpr const char* kUnverifiedDevice = "UNVERIFIED DEVICE";
 /// The code of that deviation.
 inline constexpr const char* kUnverifiedDeviceCode = "unverified-device";
 
-/// In alphabetical order.
+/// All codes, in alphabetical order.
 inline constexpr auto kDeviationCodes = std::to_array<std::string_view>({"answers-lost",
                                                                          "clock-set-back",
                                                                          "comfort-stop",

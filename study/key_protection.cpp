@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::string_view kProtectedFormat = "touchtrial-protected";
 constexpr int kProtectedVersion = 1;
-/// A protected file has two digits for each byte of a plain one, which has at most 64 MiB.
+/// The size limit of a protected file, which has two digits for each byte of its text. The text has
+/// at most 64 MiB.
 constexpr std::uintmax_t kMaxSecretFileBytes = std::uintmax_t{129} << 20U;
 
 /// The content of a protected file.
@@ -26,10 +27,10 @@ struct Envelope {
   Bytes box;
 };
 
-/// The source of passphrases, and the keys derived from those that were right.
+/// The source of passphrases, and the keys that it has produced.
 struct Passphrases {
   std::mutex mutex;
-  AskPassphrase ask;
+  AskPassphrase prompt;
   std::map<Salt, SecretKey> keys;  ///< keys that opened a file; each file has its own salt
 };
 
@@ -69,7 +70,7 @@ std::vector<std::string> words_of(std::string_view text) {
 
 /// \return nothing if the words do not form an envelope
 std::optional<Envelope> envelope_of(const std::vector<std::string>& words) {
-  // Format, version, who signs in two words, argon2id with three numbers, box, hash, end.
+  // Format, version, signer in two words, argon2id with three numbers, box, hash, end.
   constexpr std::size_t kWords = 11;
   if (words.size() != kWords) return std::nullopt;
   const auto signer = digest_from_hex(words[3]);
@@ -95,7 +96,7 @@ std::optional<Envelope> envelope_in(const std::string& text, const std::filesyst
   const std::vector<std::string> words = words_of(text);
   std::optional<Envelope> envelope = envelope_of(words);
   if (envelope && !is_in_range(envelope->cost)) {
-    refuse_file(path, "asks for " + std::to_string(envelope->cost.passes) + " passes over " +
+    refuse_file(path, "requires " + std::to_string(envelope->cost.passes) + " passes over " +
                           std::to_string(envelope->cost.memory_bytes) +
                           " bytes of Argon2id, outside the range that this program writes; restore "
                           "the file from a backup");
@@ -110,7 +111,7 @@ std::optional<Envelope> envelope_in(const std::string& text, const std::filesyst
 }
 
 /// The text of a protected file.
-/// \param envelope  without its box
+/// \param envelope  its box is ignored
 std::string sealed_text(Envelope envelope, const SecretKey& key, const std::string& text) {
   envelope.box = seal(key, head_of(envelope), bytes_of(text));
   return text_of_envelope(envelope);
@@ -122,29 +123,29 @@ struct OpenedEnvelope {
   std::string text;
 };
 
-std::optional<OpenedEnvelope> opened_with(const SecretKey& key, const Envelope& envelope) {
+std::optional<OpenedEnvelope> open_box_of(const SecretKey& key, const Envelope& envelope) {
   const auto text = unseal(key, head_of(envelope), envelope.box);
   if (!text) return std::nullopt;
   return OpenedEnvelope{key, text_of(*text)};
 }
 
-OpenedEnvelope opened_envelope(const Envelope& envelope, const std::filesystem::path& path) {
-  Passphrases& known = passphrases();
-  const std::lock_guard lock(known.mutex);
-  if (const auto key = known.keys.find(envelope.salt); key != known.keys.end()) {
-    if (auto opened = opened_with(key->second, envelope)) return *std::move(opened);
+OpenedEnvelope open_envelope(const Envelope& envelope, const std::filesystem::path& path) {
+  Passphrases& state = passphrases();
+  const std::lock_guard lock(state.mutex);
+  if (const auto key = state.keys.find(envelope.salt); key != state.keys.end()) {
+    if (auto opened = open_box_of(key->second, envelope)) return *std::move(opened);
   }
   for (int attempt = 1;; ++attempt) {
-    const auto passphrase = known.ask ? known.ask(path, attempt) : std::nullopt;
+    const auto passphrase = state.prompt ? state.prompt(path, attempt) : std::nullopt;
     if (!passphrase && attempt == 1) {
       refuse_file(path,
-                  "is protected by a passphrase; give a file that holds it with "
+                  "is protected by a passphrase; give a file that contains it with "
                   "--passphrase-file, or run this command at a terminal, which asks for it");
     }
     if (!passphrase) refuse_file(path, "the passphrase is wrong; try again with the right one");
     const SecretKey key = key_of_passphrase(*passphrase, envelope.salt, envelope.cost);
-    if (auto opened = opened_with(key, envelope)) {
-      known.keys.insert_or_assign(envelope.salt, key);
+    if (auto opened = open_box_of(key, envelope)) {
+      state.keys.insert_or_assign(envelope.salt, key);
       return *std::move(opened);
     }
   }
@@ -169,46 +170,47 @@ Salt fresh_salt() {
 
 }  // namespace
 
-void ask_passphrases_with(AskPassphrase ask) {
-  Passphrases& known = passphrases();
-  const std::lock_guard lock(known.mutex);
-  known.ask = std::move(ask);
-  known.keys.clear();
+void set_passphrase_prompt(AskPassphrase prompt) {
+  Passphrases& state = passphrases();
+  const std::lock_guard lock(state.mutex);
+  state.prompt = std::move(prompt);
+  state.keys.clear();
 }
 
-std::optional<PublicKey> signer_in_clear(const std::string& text,
-                                         const std::filesystem::path& source) {
+std::optional<PublicKey> unencrypted_signer(const std::string& text,
+                                            const std::filesystem::path& source) {
   const std::optional<Envelope> envelope = envelope_in(text, source);
   return envelope ? std::optional(envelope->signer) : std::nullopt;
 }
 
-std::optional<PublicKey> signer_in_clear(const std::filesystem::path& file) {
-  return signer_in_clear(text_of_file(file), file);
+std::optional<PublicKey> unencrypted_signer(const std::filesystem::path& file) {
+  return unencrypted_signer(text_of_file(file), file);
 }
 
 bool is_protected(const std::filesystem::path& file) {
-  return signer_in_clear(file).has_value();
+  return unencrypted_signer(file).has_value();
 }
 
 std::string read_secret_text(const std::filesystem::path& path) {
   require_owner_only(path);
   std::string text = text_of_file(path);
   const std::optional<Envelope> envelope = envelope_in(text, path);
-  return envelope ? opened_envelope(*envelope, path).text : text;
+  return envelope ? open_envelope(*envelope, path).text : text;
 }
 
 void save_secret_text(const std::filesystem::path& path, const std::string& text,
                       const PublicKey& signer) {
-  const std::string before = is_there(path) ? text_of_file(path) : "";
-  if (before == text && is_owner_only(path)) return;
-  const std::optional<Envelope> envelope = envelope_in(before, path);
+  const std::string old_text = path_exists(path) ? text_of_file(path) : "";
+  if (old_text == text && is_owner_only(path)) return;
+  const std::optional<Envelope> envelope = envelope_in(old_text, path);
   if (!envelope) {
     replace_file(path, text, FileMode::owner_only);
     return;
   }
-  const SecretKey key = opened_envelope(*envelope, path).key;
-  const Envelope anew{.signer = signer, .salt = envelope->salt, .cost = envelope->cost, .box = {}};
-  replace_file(path, sealed_text(anew, key, text), FileMode::owner_only);
+  const SecretKey key = open_envelope(*envelope, path).key;
+  const Envelope updated{
+      .signer = signer, .salt = envelope->salt, .cost = envelope->cost, .box = {}};
+  replace_file(path, sealed_text(updated, key, text), FileMode::owner_only);
 }
 
 void write_secret_text(const std::filesystem::path& path, const std::string& text,
@@ -225,11 +227,11 @@ void write_secret_text(const std::filesystem::path& path, const std::string& tex
   }
   const Salt salt = fresh_salt();
   const SecretKey key = key_of_passphrase(*passphrase, salt, cost);
-  const Envelope anew{.signer = signer, .salt = salt, .cost = cost, .box = {}};
-  replace_file(path, sealed_text(anew, key, text), FileMode::owner_only);
-  Passphrases& known = passphrases();
-  const std::lock_guard lock(known.mutex);
-  known.keys.insert_or_assign(salt, key);
+  const Envelope envelope{.signer = signer, .salt = salt, .cost = cost, .box = {}};
+  replace_file(path, sealed_text(envelope, key, text), FileMode::owner_only);
+  Passphrases& state = passphrases();
+  const std::lock_guard lock(state.mutex);
+  state.keys.insert_or_assign(salt, key);
 }
 
 }  // namespace touchtrial::study

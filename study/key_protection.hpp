@@ -1,7 +1,7 @@
-/// \file Passphrase protection of secret files. A protected file holds the text of a key or station
-/// file, encrypted with a key that Argon2id derives from the passphrase. Everything that loads or
-/// saves keys calls these functions, so no other code handles passphrases. Format:
-/// docs/data-dictionary.md, "Protected file". All functions are thread-safe.
+/// \file Passphrase protection of secret files. A protected file contains the text of a key or
+/// station file, encrypted with a key that Argon2id derives from the passphrase. Only these
+/// functions handle passphrases. Format: docs/data-dictionary.md, "Protected file". All functions
+/// are thread-safe.
 #pragma once
 
 #include "core/passphrase.hpp"
@@ -22,22 +22,22 @@ namespace touchtrial::study {
 using AskPassphrase =
     std::function<std::optional<std::string>(const std::filesystem::path& file, int attempt)>;
 
-/// Sets the source of passphrases for the whole program. Without one, protected files are refused.
-/// The passphrase of a file is asked for once.
-void ask_passphrases_with(AskPassphrase ask);
+/// Sets the program's source of passphrases. Without one, protected files are refused. Each file's
+/// passphrase is requested once.
+void set_passphrase_prompt(AskPassphrase prompt);
 
 /// The minimum length of a new passphrase, bytes.
 inline constexpr std::size_t kMinPassphraseBytes = 8;
 
 /// The public signing key named in the unencrypted part of a protected file. It identifies the
-/// file's owner before a passphrase is asked for.
+/// file's owner before a passphrase is requested.
 /// \return nothing if no passphrase protects the file
 /// \throws FileError if it is missing or cannot be read, or is protected and damaged
-[[nodiscard]] std::optional<PublicKey> signer_in_clear(const std::filesystem::path& file);
+[[nodiscard]] std::optional<PublicKey> unencrypted_signer(const std::filesystem::path& file);
 /// The same for a file's text.
 /// \param source  the file's name, for errors
-[[nodiscard]] std::optional<PublicKey> signer_in_clear(const std::string& text,
-                                                       const std::filesystem::path& source);
+[[nodiscard]] std::optional<PublicKey> unencrypted_signer(const std::string& text,
+                                                          const std::filesystem::path& source);
 
 /// Whether a passphrase protects the file.
 /// \throws FileError if it is missing or cannot be read, or is protected and damaged

@@ -11,23 +11,23 @@
 namespace touchtrial::study {
 namespace {
 
-constexpr std::size_t kMaxTextBytes = 4000;  // bytes
+constexpr std::size_t kMaxTextBytes = 4000;
 constexpr std::string_view kBold = "**";
-constexpr std::string_view kPictureBegins = "![](";
+constexpr std::string_view kPictureStart = "![](";
 constexpr std::string_view kDrawings = "drawing:";
 
-/// Whether a file must have all texts.
+/// Which texts a file must contain.
 enum class Extent { all, some };
 
 /// The English texts, whose keys and marks all other languages must match.
 const Texts& english_texts() {
   static const Texts texts = [] {
-    Texts read;
+    Texts english;
     const auto file = nlohmann::json::parse(language_files().front());
     for (const auto& [key, value] : file.items()) {
-      if (value.is_object()) read[key] = value.get<std::map<std::string, std::string>>();
+      if (value.is_object()) english[key] = value.get<std::map<std::string, std::string>>();
     }
-    return read;
+    return english;
   }();
   return texts;
 }
@@ -59,17 +59,18 @@ std::vector<std::string> words_in_braces(std::string_view text) {
   return words;
 }
 
-/// Requires that a text has the same marks as the English one.
+/// Requires a text to have the same marks as the English one.
 void check_marks(const JsonValue& place, const std::vector<std::string>& marks,
                  const std::vector<std::string>& english) {
-  std::vector<std::string> other;
-  std::ranges::set_difference(english, marks, std::back_inserter(other));
-  if (!other.empty()) {
-    place.refuse("lacks " + in_quotes(other.front()) + "; write it where it belongs in the text");
+  std::vector<std::string> difference;
+  std::ranges::set_difference(english, marks, std::back_inserter(difference));
+  if (!difference.empty()) {
+    place.refuse("lacks " + in_quotes(difference.front()) +
+                 "; write it where it belongs in the text");
   }
-  std::ranges::set_difference(marks, english, std::back_inserter(other));
-  if (!other.empty()) {
-    place.refuse("has " + in_quotes(other.front()) +
+  std::ranges::set_difference(marks, english, std::back_inserter(difference));
+  if (!difference.empty()) {
+    place.refuse("has " + in_quotes(difference.front()) +
                  (english.empty() ? ", which the English text does not have"
                                   : " more often than the English text") +
                  "; remove it");
@@ -103,9 +104,9 @@ Texts read_sections(const JsonObject& file, Extent extent) {
     const auto member = member_of(file, section, extent);
     if (!member) continue;
     const JsonObject object = member->object(keys_of(english));
-    for (const auto& [key, sample] : english) {
+    for (const auto& [key, english_text] : english) {
       const auto text = member_of(object, key, extent);
-      if (text) texts[section][key] = read_text(*text, sample, extent);
+      if (text) texts[section][key] = read_text(*text, english_text, extent);
     }
   }
   return texts;
@@ -114,9 +115,9 @@ Texts read_sections(const JsonObject& file, Extent extent) {
 }  // namespace
 
 std::string_view picture_in(std::string_view line) noexcept {
-  const bool is_picture = line.starts_with(kPictureBegins) && line.ends_with(')');
+  const bool is_picture = line.starts_with(kPictureStart) && line.ends_with(')');
   if (!is_picture) return {};
-  return line.substr(kPictureBegins.size(), line.size() - kPictureBegins.size() - 1);
+  return line.substr(kPictureStart.size(), line.size() - kPictureStart.size() - 1);
 }
 
 void check_markup(const JsonValue& place, const std::string& text) {
@@ -146,11 +147,11 @@ Language parse_language(std::string_view text, const std::string& source) {
 }
 
 const Language& language_of(std::string_view code) {
-  struct Parsed {
+  struct LazyLanguage {
     std::once_flag once;
     Language language;
   };
-  static std::vector<Parsed> all(language_codes().size());
+  static std::vector<LazyLanguage> all(language_codes().size());
   const auto found = std::ranges::find(language_codes(), code.substr(0, 2));
   const std::size_t i = found == language_codes().end()
                             ? 0
@@ -171,9 +172,9 @@ Texts read_texts(const JsonValue& place) {
 
 Texts texts_of(const SessionPlan& session) {
   Texts texts = language_of(session.language).texts;
-  const auto own = session.texts.find(session.language);
-  if (own == session.texts.end()) return texts;
-  for (const auto& [section, parts] : own->second) {
+  const auto replacements = session.texts.find(session.language);
+  if (replacements == session.texts.end()) return texts;
+  for (const auto& [section, parts] : replacements->second) {
     for (const auto& [key, text] : parts) texts[section][key] = text;
   }
   return texts;
@@ -181,15 +182,15 @@ Texts texts_of(const SessionPlan& session) {
 
 std::vector<std::string> picture_files(const SessionPlan& session) {
   std::vector<std::string> files;
-  const auto look = [&files](const std::string& page) {
+  const auto add_pictures = [&files](const std::string& page) {
     for (const std::string& name : pictures_of(page)) {
       if (name != kHandDrawing && std::ranges::count(files, name) == 0) files.push_back(name);
     }
   };
   const auto pages = session.instructions.find(session.language);
-  if (pages != session.instructions.end()) std::ranges::for_each(pages->second, look);
+  if (pages != session.instructions.end()) std::ranges::for_each(pages->second, add_pictures);
   for (const auto& [section, parts] : texts_of(session)) {
-    for (const auto& [key, text] : parts) look(text);
+    for (const auto& [key, text] : parts) add_pictures(text);
   }
   return files;
 }

@@ -1,5 +1,5 @@
-/// \file The texts that people read in a session, in each language of the program. They come from
-/// the files of config/texts, which are built in and read strictly; a study can replace some.
+/// \file The texts that people read in a session, in each language of the program. The files of
+/// config/texts are built in and read strictly; a study can replace some texts.
 /// Format: docs/running-sessions.md, "Texts and languages".
 #pragma once
 
@@ -19,14 +19,14 @@ namespace touchtrial::study {
 struct Language {
   std::string code;    ///< "fr"
   std::string name;    ///< in English: "French"
-  bool draft = false;  ///< neither checked by its speakers nor validated
+  bool draft = false;  ///< whether the texts are neither checked by native speakers nor validated
   Texts texts;
 };
 
 /// The codes of the built-in languages: the names of their files, in the same order.
 [[nodiscard]] const std::vector<std::string_view>& language_codes();
 
-/// Parsed on first use; thread-safe.
+/// The texts are parsed on first use. Thread-safe.
 /// \param code  "de", "de-AT"
 /// \return the language, or English if the program does not have it
 [[nodiscard]] const Language& language_of(std::string_view code);
@@ -40,7 +40,7 @@ struct Language {
 /// \throws StudyError with the source, the JSON pointer of the key, and the remedy
 [[nodiscard]] Language parse_language(std::string_view text, const std::string& source);
 
-/// Reads texts that replace some of a language's. They may omit its pictures.
+/// Reads texts that replace some of a language's. They need not contain its pictures.
 /// \throws StudyError as parse_language
 [[nodiscard]] Texts read_texts(const JsonValue& place);
 

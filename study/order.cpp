@@ -15,19 +15,19 @@ bool Order::is_adaptive() const noexcept {
   return std::ranges::any_of(schedule_.trials, &std::vector<Plane>::empty, &Trial::planes);
 }
 
-std::vector<Trial> Order::restarted(int block, int restarts_before, int first_trial) const {
-  std::vector<Trial> again;
+std::vector<Trial> Order::redraw_block(int block, int restarts_before, int first_trial) const {
+  std::vector<Trial> trials;
   for (const Trial& trial : schedule_.trials) {
-    if (trial.place.block == block) again.push_back(trial);
+    if (trial.place.block == block) trials.push_back(trial);
   }
-  if (again.empty() || restarts_before < 0) {
+  if (trials.empty() || restarts_before < 0) {
     throw std::invalid_argument("Order: the schedule has no such block or restart");
   }
   RandomStream random(secret_, "schedule: block " + std::to_string(block) + ", restart " +
                                    std::to_string(restarts_before + 1));
-  shuffle(std::span<Trial>(again), random);
-  for (Trial& trial : again) trial.place.trial = first_trial++;
-  return again;
+  shuffle(std::span<Trial>(trials), random);
+  for (Trial& trial : trials) trial.place.trial = first_trial++;
+  return trials;
 }
 
 double draw_rove_db(double range_db, RandomStream& random) {

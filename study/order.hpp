@@ -16,7 +16,7 @@ namespace touchtrial::study {
 class Order {
  public:
   /// \param schedule  trials are numbered from 1, blocks from 0
-  /// \param secret  of the participant's draw; restarted blocks are drawn from it
+  /// \param secret  of the participant's draw, from which restarted blocks are drawn
   Order(Schedule schedule, const SecretKey& secret);
   virtual ~Order() = default;
   Order(const Order&) = delete;
@@ -27,8 +27,8 @@ class Order {
   /// Whether answers decide what is presented. Blocks of such an order cannot be restarted.
   [[nodiscard]] bool is_adaptive() const noexcept;
 
-  /// The trial to present at a place of the schedule. It changes only after a notification, and
-  /// keeps the place.
+  /// The trial to present at a place of the schedule. It has the same place, and changes only after
+  /// a notification.
   [[nodiscard]] virtual Trial at(const Trial& scheduled) const { return scheduled; }
   /// Notifies the order of the answer to the last presented trial.
   /// \param shown  as `at` returned it
@@ -45,8 +45,8 @@ class Order {
   /// \param first_trial  number of the first trial; the others count up from it
   /// \throws StudyError if the study does not permit the order
   /// \throws std::invalid_argument if the schedule has no such block
-  [[nodiscard]] virtual std::vector<Trial> restarted(int block, int restarts_before,
-                                                     int first_trial) const;
+  [[nodiscard]] virtual std::vector<Trial> redraw_block(int block, int restarts_before,
+                                                        int first_trial) const;
 
  private:
   Schedule schedule_;

@@ -45,16 +45,16 @@ int lock(int descriptor, int operation) {
 }
 
 /// \param what  path named in the error message
-/// \param make_folder_again  called before each attempt, because another process may have removed
+/// \param ensure_folder  called before each attempt, because another process may have removed
 ///   the folder
 /// \return the descriptor of the file that holds the lock
 template <typename MakeFolder>
-int locked(const std::filesystem::path& file, const std::filesystem::path& what, int operation,
-           MakeFolder make_folder_again) {
-  // Each process that found nothing to do removes the folder once.
+int open_locked(const std::filesystem::path& file, const std::filesystem::path& what, int operation,
+                MakeFolder ensure_folder) {
+  // Other processes that found nothing to do may remove the folder, each of them once.
   constexpr int kMaxAttempts = 100;
   for (int attempt = 0;; ++attempt) {
-    make_folder_again();
+    ensure_folder();
     const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
     const int reason = descriptor < 0 ? errno : lock(descriptor, operation);
     if (reason == 0 && has_name(descriptor, file)) return descriptor;
@@ -70,8 +70,8 @@ PackLock::PackLock(std::filesystem::path folder, Use use, Wait wait) : folder_(s
   const std::filesystem::path file = folder_ / "prepare.lock";
   const int waiting = wait == Wait::yes ? 0 : LOCK_NB;
   if (use == Use::prepare) {
-    descriptor_ = locked(file, folder_, LOCK_EX | waiting, [this] {
-      made_ = made_ || !is_there(folder_);
+    descriptor_ = open_locked(file, folder_, LOCK_EX | waiting, [this] {
+      created_folder_ = created_folder_ || !path_exists(folder_);
       make_folder(folder_);
     });
     return;
@@ -90,7 +90,7 @@ PackLock::~PackLock() {
     std::filesystem::remove(key_file_, ignored);
     ::close(key_descriptor_);
   }
-  if (made_) {
+  if (created_folder_) {
     const auto files = std::filesystem::directory_iterator(folder_, ignored);
     if (std::distance(begin(files), end(files)) == 1) {
       std::filesystem::remove(folder_ / "prepare.lock", ignored);
@@ -103,7 +103,7 @@ PackLock::~PackLock() {
 void PackLock::lock_key(const std::filesystem::path& key) {
   key_file_ = key;
   key_file_ += ".lock";
-  key_descriptor_ = locked(key_file_, key, LOCK_EX | LOCK_NB, [] {});
+  key_descriptor_ = open_locked(key_file_, key, LOCK_EX | LOCK_NB, [] {});
 }
 
 }  // namespace touchtrial::study

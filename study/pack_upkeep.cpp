@@ -36,7 +36,7 @@ const engine::PackEntry* entry_of(const engine::PackManifest& manifest, const st
 bool has_bytes_of(const engine::PackEntry& entry, const std::filesystem::path& folder) {
   const std::filesystem::path file = field_path(folder, entry.code);
   try {
-    return is_there(file) && sha256_of_file(file) == entry.checksum;
+    return path_exists(file) && sha256_of_file(file) == entry.checksum;
   } catch (const FileError&) {
     return false;  // an unreadable field is rebuilt
   }
@@ -44,7 +44,7 @@ bool has_bytes_of(const engine::PackEntry& entry, const std::filesystem::path& f
 
 /// Codes are random, so a manifest that names one of the key's codes belongs to this study,
 /// whatever identity it states.
-bool is_of_other(const engine::PackManifest& manifest, const StudyKey& key) {
+bool belongs_to_other_key(const engine::PackManifest& manifest, const StudyKey& key) {
   return manifest.study_id != key.study_id &&
          std::ranges::none_of(key.stimuli, [&](const KeyedStimulus& keyed) {
            return names_code(manifest, keyed.code);
@@ -68,12 +68,12 @@ EarlierFields::EarlierFields(const std::filesystem::path& folder, const StudyKey
       pack_ = engine::Pack(folder).manifest();
     } catch (const FileError& error) {
       damage_ = error.what();
-      damage_.erase(damage_.rfind("; "));  // the remedy is what prepare does
+      damage_.erase(damage_.rfind("; "));  // prepare itself is the remedy
     }
-    if (damage_.empty() && is_of_other(pack_, key)) {
+    if (damage_.empty() && belongs_to_other_key(pack_, key)) {
       if (!key.simulated) {
         throw FileError(one_line(folder.string()) +
-                        ": holds the pack of another key; choose another folder with --pack, or "
+                        ": contains the pack of another key; choose another folder with --pack, or "
                         "delete this one if its key is lost");
       }
       pack_ = {};
@@ -90,22 +90,22 @@ EarlierFields::EarlierFields(const std::filesystem::path& folder, const StudyKey
   }
 }
 
-std::optional<FoundField> EarlierFields::find(const std::string& code, const Digest& tag) const {
+std::optional<ReusableField> EarlierFields::find(const std::string& code, const Digest& tag) const {
   for (const engine::PackManifest* list : {&pack_, &drafts_}) {
     const engine::PackEntry* const entry = entry_of(*list, code, tag);
     if (entry == nullptr) continue;
-    if (has_bytes_of(*entry, folder_)) return FoundField{*entry, false};
-    if (has_bytes_of(*entry, draft_folder(folder_))) return FoundField{*entry, true};
+    if (has_bytes_of(*entry, folder_)) return ReusableField{*entry, false};
+    if (has_bytes_of(*entry, draft_folder(folder_))) return ReusableField{*entry, true};
   }
   return std::nullopt;
 }
 
-bool EarlierFields::names(const std::string& code, const Digest& tag) const {
+bool EarlierFields::lists_field(const std::string& code, const Digest& tag) const {
   return entry_of(pack_, code, tag) != nullptr;
 }
 
 void remove_leftovers(const std::filesystem::path& folder, const engine::PackManifest& manifest) {
-  std::error_code ignored;  // a leftover that stays does no harm
+  std::error_code ignored;  // a remaining leftover does no harm
   std::filesystem::remove_all(draft_folder(folder), ignored);
   std::vector<std::filesystem::path> leftovers;
   for (const auto& file : std::filesystem::directory_iterator(folder)) {

@@ -16,14 +16,14 @@ namespace touchtrial::study {
 [[nodiscard]] std::filesystem::path field_path(const std::filesystem::path& folder,
                                                const std::string& code);
 
-/// The folder of unfinished fields and their manifest. It lies in the pack's folder, so that fields
+/// The folder of unfinished fields and their manifest. It is in the pack's folder, so that fields
 /// can be moved by renaming. Its manifest has no seal, so that no session presents these fields.
 [[nodiscard]] std::filesystem::path draft_folder(const std::filesystem::path& folder);
 
 /// A field from an earlier run, which need not be rebuilt.
-struct FoundField {
+struct ReusableField {
   engine::PackEntry entry;
-  bool is_draft = false;  ///< whether it lies among the drafts
+  bool is_draft = false;  ///< whether it is among the drafts, not in the pack
 };
 
 /// Fields of a study from earlier runs: those of its pack, and drafts of an interrupted run. Only
@@ -32,14 +32,17 @@ class EarlierFields {
  public:
   /// A simulated study ignores and replaces another study's pack, because a simulated pack can be
   /// rebuilt from its study file.
-  /// \throws FileError if the study is not simulated and the folder holds another study's pack
+  /// \throws FileError if the study is not simulated and the folder contains another study's pack
   EarlierFields(const std::filesystem::path& folder, const StudyKey& key);
 
   /// \return an intact field made from this input, if there is one
-  [[nodiscard]] std::optional<FoundField> find(const std::string& code, const Digest& tag) const;
-  /// Whether the pack names a field made from this input; its file is damaged if `find` finds none.
-  [[nodiscard]] bool names(const std::string& code, const Digest& tag) const;
-  [[nodiscard]] bool has(const engine::PackManifest& manifest) const { return pack_ == manifest; }
+  [[nodiscard]] std::optional<ReusableField> find(const std::string& code, const Digest& tag) const;
+  /// Whether the pack lists a field made from this input. If `find` nevertheless returns nothing,
+  /// the field's file is damaged.
+  [[nodiscard]] bool lists_field(const std::string& code, const Digest& tag) const;
+  [[nodiscard]] bool has_manifest(const engine::PackManifest& manifest) const {
+    return pack_ == manifest;
+  }
   [[nodiscard]] const std::vector<engine::PackEntry>& drafts() const noexcept {
     return drafts_.entries;
   }

@@ -11,14 +11,14 @@
 namespace touchtrial::study {
 namespace {
 
-engine::Gains weaker(const engine::Gains& one, const engine::Gains& other) {
-  return {.tangential_n = std::min(one.tangential_n, other.tangential_n),
-          .normal_n = std::min(one.normal_n, other.normal_n),
-          .height_mm = std::min(one.height_mm, other.height_mm)};
+engine::Gains weaker(const engine::Gains& a, const engine::Gains& b) {
+  return {.tangential_n = std::min(a.tangential_n, b.tangential_n),
+          .normal_n = std::min(a.normal_n, b.normal_n),
+          .height_mm = std::min(a.height_mm, b.height_mm)};
 }
 
-RandomStream stream_of(const ScheduleDraw& draw, const std::string& what, int round) {
-  return {draw.secret, "practice: " + what, static_cast<std::uint64_t>(round)};
+RandomStream stream_of(const ScheduleDraw& draw, const std::string& purpose, int round) {
+  return {draw.secret, "practice: " + purpose, static_cast<std::uint64_t>(round)};
 }
 
 std::vector<int> shuffled_classes(const Study& study, RandomStream& random) {
@@ -44,20 +44,20 @@ GreyImage middle_of(const GreyImage& picture, const PlaneGeometry& plane) {
 }
 
 std::vector<engine::Gains> practice_gains(std::span<const engine::FieldView> fields,
-                                          std::span<const engine::Gains> of_study,
+                                          std::span<const engine::Gains> study_gains,
                                           const engine::RenderingOptions& rendering) {
   if (fields.empty()) return {};
-  std::vector<engine::Gains> gains = engine::choose_gains(fields, rendering).of_field;
+  std::vector<engine::Gains> gains = engine::choose_gains(fields, rendering).per_field;
   if (rendering.gains || rendering.equalise == engine::Equalise::rms) return gains;
-  const engine::Gains weakest = weakest_of(of_study);
-  for (engine::Gains& of_field : gains) of_field = weaker(of_field, weakest);
+  const engine::Gains weakest = weakest_of(study_gains);
+  for (engine::Gains& field_gains : gains) field_gains = weaker(field_gains, weakest);
   return gains;
 }
 
 engine::Gains weakest_of(std::span<const engine::Gains> gains) {
   if (gains.empty()) return {};
   engine::Gains weakest = gains.front();
-  for (const engine::Gains& of_field : gains) weakest = weaker(weakest, of_field);
+  for (const engine::Gains& field_gains : gains) weakest = weaker(weakest, field_gains);
   return weakest;
 }
 
@@ -67,8 +67,8 @@ Practice Task::practice(const Study& study, const ScheduleDraw& draw, int round)
   if (plan.classes.empty()) return practice;
   RandomStream layout_random = stream_of(draw, "layout", round);
   const std::vector<int> layout = shuffled_classes(study, layout_random);
-  for (const int shown : layout) {
-    practice.labels.push_back(plan.classes[static_cast<std::size_t>(shown)].label);
+  for (const int class_index : layout) {
+    practice.labels.push_back(plan.classes[static_cast<std::size_t>(class_index)].label);
   }
   RandomStream random = stream_of(draw, "order", round);
   const std::vector<int> classes = shuffled_classes(study, random);
@@ -77,14 +77,14 @@ Practice Task::practice(const Study& study, const ScheduleDraw& draw, int round)
     order.push_back(classes[i % classes.size()]);
   }
   shuffle(std::span<int>(order), random);
-  for (const int shown : order) {
+  for (const int class_index : order) {
     Trial& trial = practice.trials.emplace_back();
     trial.place.trial = static_cast<int>(practice.trials.size());
     trial.role = Role::practice;
-    // At the stimuli's own gain: practice is not roved.
-    trial.planes.push_back({.field = {static_cast<int>(study.classes.size()) + shown, 0, 0},
-                            .gain_db = study.trials.own_gain_db()});
-    trial.right = static_cast<int>(std::ranges::find(layout, shown) - layout.begin());
+    // The gain is at the centre of the roved range, because practice is not roved.
+    trial.planes.push_back({.field = {static_cast<int>(study.classes.size()) + class_index, 0, 0},
+                            .gain_db = study.trials.centre_gain_db()});
+    trial.right = static_cast<int>(std::ranges::find(layout, class_index) - layout.begin());
   }
   return practice;
 }

@@ -12,17 +12,17 @@
 
 namespace touchtrial::study {
 
-/// The centre of a practice picture, from which its field is made.
+/// The centre of a practice picture, with the size of the plane.
 /// \throws std::invalid_argument if the picture has fewer pixels than the plane
 [[nodiscard]] GreyImage middle_of(const GreyImage& picture, const PlaneGeometry& plane);
 
 /// Gains of the practice textures. If the stiffness budget sets the gains, each texture gets the
-/// lower of the study's weakest gains and its own gains within the budget. Equalised textures
-/// always get the latter; explicit gains apply unchanged.
-/// \param fields  of practice
-/// \param of_study  gains of the study's own fields
+/// lower of the study's weakest gains and its own gains within the budget. Equalised textures get
+/// their own gains, and explicit gains apply unchanged.
+/// \param fields  practice fields
+/// \param study_gains  gains of the study's fields
 [[nodiscard]] std::vector<engine::Gains> practice_gains(std::span<const engine::FieldView> fields,
-                                                        std::span<const engine::Gains> of_study,
+                                                        std::span<const engine::Gains> study_gains,
                                                         const engine::RenderingOptions& rendering);
 
 /// The minimum of each gain.

@@ -30,8 +30,8 @@
 namespace touchtrial::study {
 namespace {
 
-std::filesystem::path beside(const std::filesystem::path& study_file, const char* ending) {
-  return study_file.parent_path() / (study_file.stem().string() + ending);
+std::filesystem::path path_beside(const std::filesystem::path& study_file, const char* suffix) {
+  return study_file.parent_path() / (study_file.stem().string() + suffix);
 }
 
 using Clock = std::chrono::steady_clock;
@@ -42,7 +42,7 @@ double seconds_since(Clock::time_point start) {
 
 /// An image of the study or of its practice. Its fields, one per method, are adjacent in the key.
 struct ImageOfStudy {
-  StimulusIndex stimulus;  ///< of the first field
+  StimulusIndex stimulus;  ///< the first field's
   std::filesystem::path path;
   std::size_t first_field = 0;
   std::size_t fields = 0;
@@ -55,29 +55,29 @@ struct ImageOfStudy {
 
 /// Results that depend on all fields together.
 struct MeasuredFields {
-  engine::StudyGains gains;             ///< of the study's own fields
-  std::vector<engine::Gains> of_field;  ///< of all, practice last
-  std::vector<std::string> remarks;     ///< on gains by level
-  std::vector<std::uint8_t> flat;       ///< whether a field has no texture to feel
+  engine::StudyGains gains;              ///< of the study's fields
+  std::vector<engine::Gains> per_field;  ///< of all fields, practice last
+  std::vector<std::string> remarks;      ///< on gains by level
+  std::vector<std::uint8_t> flat;        ///< whether a field has no texture to feel
 };
 
-bool is_of_same_image(const StimulusIndex& one, const StimulusIndex& other) {
-  return one.class_index == other.class_index && one.exemplar == other.exemplar;
+bool have_same_image(const StimulusIndex& a, const StimulusIndex& b) {
+  return a.class_index == b.class_index && a.exemplar == b.exemplar;
 }
 
 std::vector<ImageOfStudy> images_of(const Study& study) {
   std::vector<ImageOfStudy> images;
-  std::size_t place = 0;
+  std::size_t field_index = 0;
   for (const StimulusIndex& field : presented_fields(study)) {
-    if (images.empty() || !is_of_same_image(images.back().stimulus, field)) {
+    if (images.empty() || !have_same_image(images.back().stimulus, field)) {
       const auto& paths = study.class_at(field.class_index).images;
       ImageOfStudy& image = images.emplace_back();
       image.stimulus = field;
       image.path = study.folder / paths[static_cast<std::size_t>(field.exemplar)];
-      image.first_field = place;
+      image.first_field = field_index;
     }
     ++images.back().fields;
-    ++place;
+    ++field_index;
   }
   return images;
 }
@@ -105,8 +105,8 @@ void require_large_enough(const Study& study, const ImageOfStudy& image, int wid
                    "; use a larger image");
 }
 
-/// Reports all unreadable pictures at once, so that one run suffices to find them.
-/// \param faults  messages with their places; may be empty
+/// Reports all unreadable pictures at once, so that one run finds them all.
+/// \param faults  messages with the places of pictures; may be empty
 void refuse_images(std::vector<std::string> faults) {
   constexpr std::size_t kMaxNamed = 20;
   if (faults.empty()) return;
@@ -114,7 +114,7 @@ void refuse_images(std::vector<std::string> faults) {
   faults.resize(std::min(count, kMaxNamed));
   std::string all;
   for (const std::string& fault : faults) all += (all.empty() ? "" : "; ") + fault;
-  throw StudyError(count == 1 ? all : all + " (" + std::to_string(count) + " pictures in all)");
+  throw StudyError(count == 1 ? all : all + " (" + std::to_string(count) + " pictures in total)");
 }
 
 /// One run of prepare_pack. Stimuli are processed in parallel. Each result is stored at the index
@@ -141,7 +141,8 @@ class Preparation {
   PrepareReport run() {
     check_images_exist(key_.study);
     if (!key_.practice.empty()) plane_ = plane_of(key_.study);
-    // Hashed before the fields are built: if a picture changes in between, sessions are refused.
+    // Pictures are hashed before the fields are built, so that sessions are refused if a picture
+    // changes in between.
     pictures_ = picture_digests(key_.study);
     provide_fields();
     measure();
@@ -156,9 +157,9 @@ class Preparation {
  private:
   void provide_fields() {
     const std::vector<ImageOfStudy*> order = images_by_code();
-    const auto provide = [this](ImageOfStudy& image, bool large_too) {
+    const auto provide = [this](ImageOfStudy& image, bool include_large) {
       try {
-        provide_fields_of(image, large_too);
+        provide_fields_of(image, include_large);
       } catch (...) {
         image.failure = std::current_exception();
       }
@@ -167,7 +168,7 @@ class Preparation {
     for (ImageOfStudy* image : order) {
       if (!image->is_done && !image->failure) provide(*image, true);
     }
-    if (building_) write_drafts();
+    if (has_draft_folder_) write_drafts();
     refuse_failed_images();
   }
 
@@ -195,11 +196,11 @@ class Preparation {
     return order;
   }
 
-  /// \param large_too  whether to process a large image now; false leaves it for later
-  void provide_fields_of(ImageOfStudy& image, bool large_too) {
+  /// \param include_large  whether to process the image now even if it is large
+  void provide_fields_of(ImageOfStudy& image, bool include_large) {
     const GreyImage grey = read(image);
     image.size_px = static_cast<std::int64_t>(grey.size());
-    if (image.size_px > options_.large_image_px && !large_too) return;
+    if (image.size_px > options_.large_image_px && !include_large) return;
     image.pixels = FieldHasher().add(std::int64_t{grey.width()}).add(grey.samples()).finish();
     std::optional<ExtractedTexture> cache;
     for (std::size_t i = 0; i < image.fields; ++i) {
@@ -209,15 +210,15 @@ class Preparation {
   }
 
   /// Whether a later stimulus of the same image uses the same texture.
-  [[nodiscard]] bool is_needed_again(std::size_t i) const {
-    const auto texture_of = [this](const StimulusIndex& stimulus) {
-      return without_control(key_.study.methods[static_cast<std::size_t>(stimulus.method)]);
+  [[nodiscard]] bool is_texture_reused(std::size_t i) const {
+    const auto texture_of = [this](const StimulusIndex& index) {
+      return without_control(key_.study.methods[static_cast<std::size_t>(index.method)]);
     };
-    const StimulusIndex& own = fields_[i].stimulus;
+    const StimulusIndex& stimulus = fields_[i].stimulus;
     for (std::size_t later = i + 1; later < fields_.size(); ++later) {
       const StimulusIndex& other = fields_[later].stimulus;
-      if (!is_of_same_image(own, other)) break;
-      if (texture_of(other) == texture_of(own)) return true;
+      if (!have_same_image(stimulus, other)) break;
+      if (texture_of(other) == texture_of(stimulus)) return true;
     }
     return false;
   }
@@ -244,25 +245,25 @@ class Preparation {
     if (earlier) {
       entries_[i] = earlier->entry;
     } else {
-      is_damaged_[i] = earlier_.names(code, tag) ? 1 : 0;
-      announce_building();
+      is_damaged_[i] = earlier_.lists_field(code, tag) ? 1 : 0;
+      start_drafts();
       build(i, image, method, tag, cache);
     }
     is_draft_[i] = !earlier || earlier->is_draft ? 1 : 0;
-    note_provided(i, earlier.has_value(), start);
+    record_prepared(i, earlier.has_value(), start);
   }
 
   void build(std::size_t i, const GreyImage& image, const engine::ExtractionOptions& method,
              const Digest& tag, std::optional<ExtractedTexture>& cache) {
     const auto& [code, stimulus] = fields_[i];
     const BuiltField built =
-        build_field(image, method, key_.study.rendering, cache, is_needed_again(i));
+        build_field(image, method, key_.study.rendering, cache, is_texture_reused(i));
     entries_[i] = {
         code, engine::write_field(draft_folder(folder_), code, built.field.view()), tag, {}};
     solver_warnings_[i] = solver_warning(key_.study, stimulus, built);
   }
 
-  void note_provided(std::size_t i, bool reused, Clock::time_point start) {
+  void record_prepared(std::size_t i, bool reused, Clock::time_point start) {
     const StimulusIndex& stimulus = fields_[i].stimulus;
     PreparedStimulus& prepared = prepared_[i];
     prepared.class_label = key_.study.class_at(stimulus.class_index).label;
@@ -270,24 +271,24 @@ class Preparation {
     prepared.method = key_.study.methods[static_cast<std::size_t>(stimulus.method)].label;
     prepared.reused = reused;
     prepared.seconds = seconds_since(start);
-    note_done(i);
+    report_progress(i);
   }
 
-  void announce_building() {
+  void start_drafts() {
     const std::lock_guard lock(mutex_);
-    if (building_) return;
+    if (has_draft_folder_) return;
     make_folder(draft_folder(folder_));
     write_drafts();
-    building_ = true;
+    has_draft_folder_ = true;
   }
 
   /// Records finished fields once a second, so that an interrupted run keeps its work.
-  void note_done(std::size_t i) {
+  void report_progress(std::size_t i) {
     const std::lock_guard lock(mutex_);
     if (is_draft_[i] != 0) drafts_[entries_[i].code] = entries_[i];
-    if (building_ && seconds_since(recorded_) > 1.0) write_drafts();
-    ++done_;
-    if (progress_) progress_(done_, static_cast<int>(fields_.size()));
+    if (has_draft_folder_ && seconds_since(drafts_written_at_) > 1.0) write_drafts();
+    ++done_count_;
+    if (progress_) progress_(done_count_, static_cast<int>(fields_.size()));
   }
 
   void write_drafts() {
@@ -295,7 +296,7 @@ class Preparation {
     for (const auto& [code, entry] : drafts_) manifest.entries.push_back(entry);
     manifest.signature = key_.signer().sign(engine::digest_of(manifest));
     engine::write_manifest(draft_folder(folder_), manifest);
-    recorded_ = Clock::now();
+    drafts_written_at_ = Clock::now();
   }
 
   /// The path of a field before publish() moves the drafts.
@@ -303,7 +304,7 @@ class Preparation {
     return field_path(is_draft_[i] != 0 ? draft_folder(folder_) : folder_, entries_[i].code);
   }
 
-  /// Gains, flatness and statistics of all fields.
+  /// Computes gains, flatness and statistics of all fields.
   void measure() {
     std::vector<engine::MappedField> mapped;
     std::vector<engine::FieldView> views;
@@ -321,17 +322,17 @@ class Preparation {
     }
     for (std::size_t i = 0; i < entries_.size(); ++i) {
       PreparedStimulus& prepared = prepared_[i];
-      prepared.gains = entries_[i].gains = measured_.of_field[i];
+      prepared.gains = entries_[i].gains = measured_.per_field[i];
       prepared.bytes = size_of_field(i);
     }
   }
 
   void choose_gains(std::span<const engine::FieldView> views) {
     choose_study_gains(views.first(key_.stimuli.size()));
-    measured_.of_field = measured_.gains.of_field;
-    std::ranges::copy(practice_gains(views.subspan(key_.stimuli.size()), measured_.gains.of_field,
+    measured_.per_field = measured_.gains.per_field;
+    std::ranges::copy(practice_gains(views.subspan(key_.stimuli.size()), measured_.gains.per_field,
                                      key_.study.rendering),
-                      std::back_inserter(measured_.of_field));
+                      std::back_inserter(measured_.per_field));
   }
 
   void choose_study_gains(std::span<const engine::FieldView> views) {
@@ -352,7 +353,7 @@ class Preparation {
     measured_.flat[i] = is_flat(field) ? 1 : 0;
     if (!options_.statistics) return;
     prepared_[i].statistics =
-        engine::field_statistics(field, measured_.of_field[i], key_.study.rendering);
+        engine::field_statistics(field, measured_.per_field[i], key_.study.rendering);
   }
 
   [[nodiscard]] std::uintmax_t size_of_field(std::size_t i) const {
@@ -367,7 +368,8 @@ class Preparation {
   void finish() {
     engine::PackManifest manifest{key_.study_id, entries_};
     sign(manifest, key_, pictures_);
-    const bool is_changed = !earlier_.has(manifest) || std::ranges::count(is_draft_, 1) > 0;
+    const bool is_changed =
+        !earlier_.has_manifest(manifest) || std::ranges::count(is_draft_, 1) > 0;
     if (is_changed) {
       make_folder(draft_folder(folder_));
       engine::write_manifest(draft_folder(folder_), manifest);
@@ -387,7 +389,7 @@ class Preparation {
       rename_file(field_of(i), field_path(folder_, entries_[i].code));
     }
     rename_file(draft_folder(folder_) / "pack.json", folder_ / "pack.json");
-    // Equal times, so that the time of a field does not reveal its picture.
+    // All fields get the same time, so that it does not reveal a field's picture.
     const auto now = std::filesystem::file_time_type::clock::now();
     for (const engine::PackEntry& entry : manifest.entries) {
       std::error_code ignored;
@@ -412,7 +414,8 @@ class Preparation {
     if (!earlier_.damage().empty()) {
       report_.warnings.push_back(earlier_.damage() + ": all fields were rebuilt");
     }
-    // Does not name them: together with a code that `run` named, that would break the blinding.
+    // The warning does not name the fields. Together with a code that `run` named, that would break
+    // the blinding.
     if (const auto damaged = std::ranges::count(is_damaged_, 1); damaged > 0) {
       report_.warnings.push_back(counted(damaged, "field") +
                                  " of the pack damaged or missing: rebuilt");
@@ -433,7 +436,7 @@ class Preparation {
         report_.warnings.push_back(one_line(image.path.string() + ": " + remark));
       }
     }
-    for (auto& warning : twin_warnings(key_.study, pixels)) {
+    for (auto& warning : duplicate_warnings(key_.study, pixels)) {
       report_.warnings.push_back(std::move(warning));
     }
     for (std::size_t i = 0; i < fields_.size(); ++i) {
@@ -445,7 +448,7 @@ class Preparation {
   }
 
   const StudyKey& key_;
-  std::vector<KeyedStimulus> fields_;  ///< of the key
+  std::vector<KeyedStimulus> fields_;  ///< of the key, practice last
   std::filesystem::path folder_;
   const Progress& progress_;
   PrepareOptions options_;
@@ -463,9 +466,9 @@ class Preparation {
 
   std::mutex mutex_;  ///< guards the members below
   std::map<std::string, engine::PackEntry> drafts_;
-  bool building_ = false;
-  Clock::time_point recorded_;
-  int done_ = 0;
+  bool has_draft_folder_ = false;
+  Clock::time_point drafts_written_at_;
+  int done_count_ = 0;
 };
 
 }  // namespace
@@ -478,15 +481,15 @@ std::filesystem::path PackPlace::station(const std::string& name) const {
 }
 
 PackPlace default_pack_place(const std::filesystem::path& study_file) {
-  return {beside(study_file, ".pack"), beside(study_file, ".key")};
+  return {path_beside(study_file, ".pack"), path_beside(study_file, ".key")};
 }
 
 PackPlace simulated_pack_place(const std::filesystem::path& study_file) {
-  return {beside(study_file, ".sim.pack"), {}};
+  return {path_beside(study_file, ".sim.pack"), {}};
 }
 
 PackPlace pack_place_at(const std::filesystem::path& pack_folder) {
-  // The key lies beside the folder, however its path is written: "name.pack/", "name.pack/.", ".".
+  // The key is beside the folder, however the path is written: "name.pack/", "name.pack/.", ".".
   auto pack = pack_folder.lexically_normal();
   if (!pack.has_filename()) pack = pack.parent_path();
   if (pack == "." || pack.filename() == "..") {
@@ -500,30 +503,30 @@ PackPlace pack_place_at(const std::filesystem::path& pack_folder) {
 }
 
 std::filesystem::path find_pack(const StudyCodes& codes, const std::filesystem::path& database) {
-  const std::filesystem::path& named = codes.pack_folder;
-  if (named.empty() || is_there(named)) return named;
+  const std::filesystem::path& pack = codes.pack_folder;
+  if (pack.empty() || path_exists(pack)) return pack;
   for (const std::filesystem::path& folder :
        {database.parent_path(), codes.study.folder, std::filesystem::path()}) {
-    std::filesystem::path place = folder / named.filename();
+    std::filesystem::path place = folder / pack.filename();
     try {
-      if (is_there(place) && engine::Pack(place).manifest().study_id == codes.study_id) {
+      if (path_exists(place) && engine::Pack(place).manifest().study_id == codes.study_id) {
         return place;
       }
     } catch (const FileError&) {
-      // There is no pack here, or it is damaged; the next folder may have one.
+      // There is no pack, or a damaged one. The next folder may have one.
     }
   }
-  return named;
+  return pack;
 }
 
 void check_images_exist(const Study& study) {
   for (const ImageOfStudy& image : images_of(study)) {
-    if (is_there(image.path)) continue;
+    if (path_exists(image.path)) continue;
     refuse_image(study, image,
                  one_line(image.path.string()) + ": does not exist; correct the path");
   }
   for (const std::string& file : picture_files(study.session)) {
-    if (is_there(study.folder / file)) continue;
+    if (path_exists(study.folder / file)) continue;
     throw StudyError(one_line(study.source + ": /session: the instructions show " +
                               in_quotes(file) + ", which does not exist; correct the path"));
   }

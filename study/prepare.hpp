@@ -24,7 +24,7 @@ struct PackPlace {
   std::filesystem::path key;
 
   /// `<study>.station` beside the key, or `<study>.NAME.station` for one of several stations.
-  /// \param name  of the station; empty or kOnlyStation: the study's only one
+  /// \param name  the station's name; empty or kOnlyStation: the study's only station
   [[nodiscard]] std::filesystem::path station(const std::string& name = {}) const;
 };
 
@@ -33,23 +33,24 @@ struct PackPlace {
 /// `<study>.sim.pack` beside the study file; the key's path is empty, because each simulated
 /// database has its own copy of the key.
 [[nodiscard]] PackPlace simulated_pack_place(const std::filesystem::path& study_file);
-/// The given folder as the pack, and the same path with `.key` in place of `.pack` as the key.
+/// Takes this folder as the pack, and the same path with `.key` instead of `.pack` as the key.
 [[nodiscard]] PackPlace pack_place_at(const std::filesystem::path& pack_folder);
 
-/// Finds a key's pack. That is the folder that the key names or, if the key was moved and the
-/// folder is not there, a folder of the same name beside the database, beside the study file or in
-/// the current folder, if it holds this study's pack.
+/// Finds a key's pack: the folder that the key names or, if it does not exist because the key was
+/// moved, a folder of the same name that contains this study's pack, beside the database, beside
+/// the study file or in the current folder.
 /// \return the folder that the key names if no pack is found; empty if the key names none
 [[nodiscard]] std::filesystem::path find_pack(const StudyCodes& codes,
                                               const std::filesystem::path& database);
 
-/// How one stimulus was prepared. Shown to the person who prepares a study, never during sessions.
+/// The preparation of one stimulus. Shown to the person who prepares a study, never during
+/// sessions.
 struct PreparedStimulus {
   std::string class_label;
   int exemplar = 0;
   std::string method;  ///< label of the method
   bool reused = false;
-  engine::FieldStatistics statistics;  ///< zeros if not requested
+  engine::FieldStatistics statistics;  ///< zeros if they were not requested
   engine::Gains gains;
   double seconds = 0.0;
   std::uintmax_t bytes = 0;
@@ -77,11 +78,12 @@ inline constexpr std::int64_t kLargeImagePixels = std::int64_t{1} << 22;
 using LevelGains = std::function<std::pair<engine::StudyGains, std::vector<std::string>>(
     std::span<const engine::FieldView> fields)>;
 
-/// What prepare_pack does besides building the pack.
+/// Options of prepare_pack.
 struct PrepareOptions {
-  bool statistics = true;  ///< fill in PreparedStimulus::statistics, at two Fourier transforms each
-  std::int64_t large_image_px = kLargeImagePixels;  ///< larger images are processed one at a time
-  LevelGains level_gains{};                         ///< needed if the study has a level
+  bool statistics = true;  ///< whether to compute statistics, with two Fourier transforms per field
+  std::int64_t large_image_px =
+      kLargeImagePixels;     ///< images above this size are processed one at a time
+  LevelGains level_gains{};  ///< needed if the study has a level
   /// Moves the key and station files into their places. Called when everything is built, before the
   /// pack's files change; may throw.
   std::function<void()> publish_secrets{};
@@ -89,18 +91,18 @@ struct PrepareOptions {
   bool is_new_key = false;
 };
 
-/// Checks that all images exist: the study's, those of its instructions and, if there is practice,
-/// those of practice. Call before anything is written.
+/// Checks that all images of the study, its instructions and its practice exist. Call before
+/// anything is written.
 /// \throws StudyError with the place in the study file of the first missing image
 void check_images_exist(const Study& study);
 
-/// The plane of a study, which has the size of each picture. Reads their headers (size_of_image).
+/// The plane of a study, which has the size of each picture. Reads only headers of pictures.
 /// \throws StudyError with the place in the study file and the remedy, if a picture cannot be read
 ///   or differs in size, or if a practice picture is smaller
 [[nodiscard]] PlaneGeometry plane_of(const Study& study);
 
 /// Called after each stimulus, from any thread, but never concurrently.
-using Progress = std::function<void(int done, int of)>;
+using Progress = std::function<void(int done, int total)>;
 
 /// Builds a pack. It extracts, renders and writes every field of the key that is missing, damaged
 /// or made from different input. Then it chooses the gains (for practice: practice_gains), signs
@@ -110,13 +112,13 @@ using Progress = std::function<void(int done, int of)>;
 ///
 /// A run that fails leaves the pack unchanged. If a picture is at fault, or the process is killed,
 /// the next run reuses the finished fields. A run that is killed while it moves them leaves a pack
-/// that sessions refuse and the next run completes. A run with nothing to do changes no file.
+/// that sessions refuse and the next run completes. If nothing has changed, no file is written.
 /// Changes of pictures and fields are detected by content, not by time.
 ///
 /// The pack's bytes depend only on key, study and images, not on the number of threads. Images of
 /// more than PrepareOptions::large_image_px pixels are processed one after another, so that the
 /// memory for a large image (docs/benchmarks/README.md) is needed only once.
-/// \param lock  of the pack's folder, for Use::prepare
+/// \param lock  lock of the pack's folder, for Use::prepare
 /// \throws StudyError if an image cannot be read, with its place in the study
 /// \throws FileError if the pack cannot be written, or belongs to another key
 PrepareReport prepare_pack(const PackLock& lock, const StudyKey& key, const Progress& progress = {},

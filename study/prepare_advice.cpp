@@ -11,9 +11,9 @@ namespace touchtrial::study {
 namespace {
 
 std::string image_in_words(const Study& study, int class_index, int exemplar) {
-  const StudyClass& shown = study.class_at(class_index);
-  const auto& image = shown.images[static_cast<std::size_t>(exemplar)];
-  return one_line("class \"" + shown.label + "\", image " + image.string());
+  const StudyClass& study_class = study.class_at(class_index);
+  const auto& image = study_class.images[static_cast<std::size_t>(exemplar)];
+  return one_line("class \"" + study_class.label + "\", image " + image.string());
 }
 
 }  // namespace
@@ -47,8 +47,10 @@ std::vector<std::string> rendering_warnings(const engine::RenderingOptions& rend
                        number_text(rendering.texture_stiffness_n_per_mm) +
                        " N/mm, so devices may vibrate; lower them or set \"budget\"");
   }
-  const auto is_nothing = [](const engine::Gains& of_field) { return of_field == engine::Gains{}; };
-  if (!rendering.gains && std::ranges::all_of(gains.of_field, is_nothing)) {
+  const auto is_zero = [](const engine::Gains& field_gains) {
+    return field_gains == engine::Gains{};
+  };
+  if (!rendering.gains && std::ranges::all_of(gains.per_field, is_zero)) {
     warnings.emplace_back(
         "/rendering/gains: all gains are 0, so no texture can be felt: every picture is flat, or a "
         "side has fewer than 3 pixels, too few for a stiffness budget; use other pictures");
@@ -73,13 +75,13 @@ std::vector<std::string> validity_warnings(const Study& study) {
     warnings.push_back("/trials/validity/" + key + ": " + what +
                        ", so no trial can be valid; lower it, or change the study");
   };
-  const auto warn_of_time = [&](const char* key, double min_s) {
+  const auto warn_if_too_long = [&](const char* key, double min_s) {
     if (min_s <= limit_s) return;
     warn(key, number_text(min_s) + " s, but a presentation can be explored for only " +
                   number_text(limit_s) + " s (/trials/explore_limit_s)");
   };
-  warn_of_time("exploring_s", rule.min_exploring_s);
-  warn_of_time("contact_s", rule.min_contact_s);
+  warn_if_too_long("exploring_s", rule.min_exploring_s);
+  warn_if_too_long("contact_s", rule.min_contact_s);
   if (rule.min_path_mm > kMaxStrokeMmS * limit_s) {
     warn("path_mm", number_text(rule.min_path_mm) +
                         " mm, more than the fastest stroke of the instructions covers in " +
@@ -102,7 +104,7 @@ std::string solver_warning(const Study& study, const StimulusIndex& stimulus,
          number_text(options.gap) + "; raise max_steps";
 }
 
-std::vector<std::string> twin_warnings(const Study& study, std::span<const Digest> pixels) {
+std::vector<std::string> duplicate_warnings(const Study& study, std::span<const Digest> pixels) {
   std::vector<std::string> warnings;
   std::map<Digest, std::string> seen;
   std::size_t image = 0;
@@ -121,7 +123,7 @@ std::vector<std::string> twin_warnings(const Study& study, std::span<const Diges
 
 std::string label_warning(const Study& study) {
   std::vector<std::string> labels;
-  for (const StudyClass& one : study.classes) labels.push_back(one.label);
+  for (const StudyClass& study_class : study.classes) labels.push_back(study_class.label);
   const std::string remark = remark_on_alphabets(labels);
   return remark.empty() ? "" : "/classes: " + remark;
 }

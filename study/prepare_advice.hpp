@@ -1,4 +1,4 @@
-/// \file Descriptions and warnings that `prepare` prints about a study. Private to study.
+/// \file Descriptions and warnings that `prepare` prints. Private to study.
 #pragma once
 
 #include "engine/rendering/gains.hpp"
@@ -15,7 +15,7 @@ namespace touchtrial::study {
 [[nodiscard]] std::string stimulus_words(const Study& study, const StimulusIndex& stimulus);
 
 /// Methods of the study file that the protocol does not present.
-/// \param pixels  number of pixels of all the study's images together
+/// \param pixels  total number of pixels of the study's images
 [[nodiscard]] std::vector<SkippedWork> skipped_work(const Study& study, std::uintmax_t pixels);
 
 /// Warnings about options that are permitted but probably unintended.
@@ -31,8 +31,8 @@ namespace touchtrial::study {
 
 /// Warnings about images with identical pixels, which no participant could tell apart.
 /// \param pixels  a digest of each image, in the study's order of classes and images
-[[nodiscard]] std::vector<std::string> twin_warnings(const Study& study,
-                                                     std::span<const Digest> pixels);
+[[nodiscard]] std::vector<std::string> duplicate_warnings(const Study& study,
+                                                          std::span<const Digest> pixels);
 
 /// \return a warning if labels of classes may look alike (remark_on_alphabets), else empty
 [[nodiscard]] std::string label_warning(const Study& study);

@@ -10,7 +10,7 @@
 namespace touchtrial::study {
 namespace {
 
-std::vector<const Protocol*>& known_protocols() {
+std::vector<const Protocol*>& registered_protocols() {
   static std::vector<const Protocol*> all;
   return all;
 }
@@ -27,7 +27,7 @@ Fields Task::fields(const Study& study) const {
 }
 
 void add_protocol(const Protocol& protocol) {
-  auto& all = known_protocols();
+  auto& all = registered_protocols();
   if (find_protocol(protocol.name) != nullptr) {
     throw std::invalid_argument("add_protocol: the name is already registered: " +
                                 std::string(protocol.name));
@@ -36,7 +36,7 @@ void add_protocol(const Protocol& protocol) {
 }
 
 const std::vector<const Protocol*>& protocols() {
-  return known_protocols();
+  return registered_protocols();
 }
 
 const Protocol* find_protocol(std::string_view name) {
@@ -75,12 +75,12 @@ Schedule make_schedule(const Study& study, const ScheduleDraw& draw) {
   return make_order(study, draw)->schedule();
 }
 
-Ask ask_of(const Study& study) {
+TrialQuestion trial_question_of(const Study& study) {
   return study.task->ask(study, Place{.trial = 1});
 }
 
 std::vector<Choice> choices_of(const Study& study) {
-  return ask_of(study).choices();
+  return trial_question_of(study).choices();
 }
 
 std::vector<StimulusIndex> presented_fields(const Study& study) {
@@ -96,10 +96,11 @@ std::vector<StimulusIndex> presented_fields(const Study& study) {
 }
 
 std::string place_of_image(const Study& study, const StimulusIndex& field) {
-  const bool practised = study.is_practice_class(field.class_index);
-  const int before = practised ? static_cast<int>(study.classes.size()) : 0;
-  return (practised ? "/practice/classes/" : "/classes/") +
-         std::to_string(field.class_index - before) + "/images/" + std::to_string(field.exemplar);
+  const bool is_practice = study.is_practice_class(field.class_index);
+  const int first_class = is_practice ? static_cast<int>(study.classes.size()) : 0;
+  return (is_practice ? "/practice/classes/" : "/classes/") +
+         std::to_string(field.class_index - first_class) + "/images/" +
+         std::to_string(field.exemplar);
 }
 
 Practice practice_of(const Study& study, const ScheduleDraw& draw, int round) {

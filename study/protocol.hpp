@@ -1,5 +1,5 @@
-/// \file The interface of a protocol, which defines its part of the study file, what is presented,
-/// and what is asked. The runner, the store, the window and the exports use a protocol only through
+/// \file The interface of a protocol, which defines its part of the study file, the stimuli and the
+/// questions. The runner, the store, the window and the exports use a protocol only through
 /// this interface. How to write one: docs/add-a-protocol.md.
 #pragma once
 
@@ -21,51 +21,51 @@ namespace touchtrial::study {
 struct Practice {
   std::vector<std::string> labels;  ///< of the alternatives, by position
   std::vector<Trial> trials;        ///< their `right` is a position; empty: no practice
-  int criterion = 0;  ///< right answers that end practice; 0: practice ends after a whole round
+  int criterion = 0;  ///< right answers that end practice; 0: practice ends after one round
   int rounds = 0;     ///< maximum
 };
 
 /// The fields that trials may present.
 struct Fields {
-  /// Replace those of the study file. Each image has a field for each presented method.
+  /// The methods, which replace the study file's. Each image has a field for each presented method.
   std::vector<StudyMethod> methods;
   std::vector<StimulusIndex> practice{};  ///< fields of practice classes
-  std::vector<Plane> mixtures{};          ///< every mix of two fields
-  /// Whether planes are compared with each other and with blank ones. Their walls then all lie at
-  /// the same height, and their gains scale forces.
-  bool levelled = false;
+  std::vector<Plane> mixtures{};          ///< every mix of two fields that a trial may present
+  /// Whether planes are compared with each other and with blank ones. All walls then have the same
+  /// height, and gains scale forces.
+  bool has_equal_heights = false;
 };
 
-/// What the participants of a study do. A protocol creates it from its own section of the study
-/// file, and it owns the options of that section. Immutable and thread-safe: every function depends
-/// only on these options and its arguments. The argument `study` is the study that owns the task.
+/// The participants' task in a study. A protocol creates it from its own section of the study file,
+/// whose options it owns. Immutable and thread-safe: every function depends only on these options
+/// and its arguments. The argument `study` is the study that owns the task.
 class Task {
  public:
   virtual ~Task() = default;
 
   /// Checks a study after its other sections have been read.
-  /// \param file  the whole study file, used to locate errors
+  /// \param file  the study file, used to locate errors
   /// \throws StudyError with the place of the error and the remedy
   virtual void check(const JsonValue& file, const Study& study) const = 0;
   /// The options that a database stores unencrypted: compact JSON that reveals nothing about a
-  /// stimulus. The seal commits to it. Empty: the database stores none.
-  [[nodiscard]] virtual std::string in_clear() const { return {}; }
+  /// stimulus. The seal commits to it. Empty: none.
+  [[nodiscard]] virtual std::string plaintext_settings() const { return {}; }
   /// The name and version of the rule that generates orders; the seal commits to it.
   [[nodiscard]] virtual std::string rule(const Study& study) const = 0;
   /// Warnings of `prepare` about options that are permitted but probably unintended, each with its
   /// place in the study file.
   [[nodiscard]] virtual std::vector<std::string> advice(const Study& /*study*/) const { return {}; }
-  /// The number of scored trials of one participant at one visit; if the visits divide the methods,
-  /// at all visits together.
+  /// One participant's number of scored trials at one visit, or at all visits together if these
+  /// divide the methods.
   [[nodiscard]] virtual int scored_trials(const Study& study) const = 0;
-  /// The number of catch trials with a right answer in a session.
+  /// The number of catch trials in a session whose answers can be right or wrong.
   [[nodiscard]] virtual int answered_catches(const Study& /*study*/) const { return 0; }
-  /// The default has every practice class with the first method, if there is practice.
+  /// The fields of the study. By default, every practice class has a field with the first method.
   [[nodiscard]] virtual Fields fields(const Study& study) const;
 
-  /// What the participant does in the trial at a place. All trials of a study ask the same
+  /// The participant's instructions for the trial at a place. All trials of a study ask the same
   /// question.
-  [[nodiscard]] virtual Ask ask(const Study& study, const Place& place) const = 0;
+  [[nodiscard]] virtual TrialQuestion ask(const Study& study, const Place& place) const = 0;
   /// \param study  must outlive the order
   /// \throws StudyError if the study does not permit the order
   [[nodiscard]] virtual std::unique_ptr<Order> order(const Study& study,
@@ -74,15 +74,16 @@ class Task {
   [[nodiscard]] virtual Practice practice(const Study& study, const ScheduleDraw& draw,
                                           int round) const;
   /// The field whose threshold a track measures, for tables and exports.
-  [[nodiscard]] virtual StimulusIndex about(const Study& /*study*/, const Level& /*level*/) const {
+  [[nodiscard]] virtual StimulusIndex threshold_field(const Study& /*study*/,
+                                                      const Level& /*level*/) const {
     return {};
   }
 };
 
-/// A protocol, as registered.
+/// A registered protocol.
 struct Protocol {
   std::string_view name;     ///< as in the study file's "protocol"
-  std::string_view section;  ///< key of its own object in the study file; empty: it has none
+  std::string_view section;  ///< key of its object in the study file; empty: none
   /// Reads that object.
   /// \param section  empty if the file omits it
   /// \throws StudyError with the place of a value that is not accepted
@@ -90,8 +91,8 @@ struct Protocol {
   int min_classes = 2;
   int min_methods = 1;
   bool adaptive = false;    ///< whether answers determine later trials
-  bool all_methods = true;  ///< participants get all of the study's methods; if not, only the first
-  /// Returns the schema of that object, in the form of annotated_section(); null: it has none.
+  bool all_methods = true;  ///< whether participants get all methods, or only the first
+  /// Returns the schema of that object, in the form of annotated_section(); null: none.
   std::string (*section_schema)() = nullptr;
   /// The registered questions that its analysis answers; a study cannot register another.
   std::span<const Estimand> estimands{};
@@ -123,8 +124,8 @@ void add_protocol(const Protocol& protocol);
 /// The place in the study file of a field's image, for errors.
 [[nodiscard]] std::string place_of_image(const Study& study, const StimulusIndex& field);
 
-/// What participants do in the trials of a study other than controls.
-[[nodiscard]] Ask ask_of(const Study& study);
+/// The question of a study's trials other than controls.
+[[nodiscard]] TrialQuestion trial_question_of(const Study& study);
 /// The alternatives of the question; empty for a question with scales.
 [[nodiscard]] std::vector<Choice> choices_of(const Study& study);
 /// A round of the study's practice.

@@ -44,25 +44,30 @@ using State = std::u16string;
 class RunCounter {
  public:
   RunCounter(const std::vector<int>& counts, int max_run)
-      : left_(counts),
+      : remaining_(counts),
         max_run_(max_run),
         histogram_(static_cast<std::size_t>(*std::ranges::max_element(counts)) + 1, u'\0') {
     for (const int count : counts) ++histogram_[static_cast<std::size_t>(count)];
   }
 
-  [[nodiscard]] int left(int symbol) const { return left_[static_cast<std::size_t>(symbol)]; }
-  [[nodiscard]] int symbols() const { return static_cast<int>(left_.size()); }
+  [[nodiscard]] int remaining(int symbol) const {
+    return remaining_[static_cast<std::size_t>(symbol)];
+  }
+  [[nodiscard]] int symbols() const { return static_cast<int>(remaining_.size()); }
   [[nodiscard]] int max_length(int copies) const { return std::min(copies, max_run_); }
 
+  /// Uses up copies of a symbol; a negative number returns them.
   void take(int symbol, int copies) {
-    int& left = left_[static_cast<std::size_t>(symbol)];
-    move(left, left - copies);
-    left -= copies;
+    int& copies_left = remaining_[static_cast<std::size_t>(symbol)];
+    move(copies_left, copies_left - copies);
+    copies_left -= copies;
   }
 
-  /// The number of completions after a run of `last` (negative: nothing came before). The next
-  /// symbol differs from `last`.
-  [[nodiscard]] BigCount completions(int last) { return count(last < 0 ? -1 : left(last)); }
+  /// The number of completions after a run of `last_symbol` (negative: no symbol precedes). The
+  /// next symbol differs from it.
+  [[nodiscard]] BigCount completions(int last_symbol) {
+    return count(last_symbol < 0 ? -1 : remaining(last_symbol));
+  }
 
  private:
   /// Records that a symbol with `from` copies left now has `to`.
@@ -72,24 +77,24 @@ class RunCounter {
   }
 
   /// Counts completions from the current state.
-  /// \param last  remaining copies of the preceding symbol; negative if there is none
-  const BigCount& count(int last) {
+  /// \param copies_of_last  remaining copies of the preceding symbol; negative if there is none
+  const BigCount& count(int copies_of_last) {
     State state = histogram_;
-    state.push_back(static_cast<char16_t>(last + 1));
-    if (const auto known = counts_.find(state); known != counts_.end()) return known->second;
+    state.push_back(static_cast<char16_t>(copies_of_last + 1));
+    if (const auto stored = counts_.find(state); stored != counts_.end()) return stored->second;
     BigCount total = 0;
     bool any_left = false;
     for (int copies = 1; copies < static_cast<int>(histogram_.size()); ++copies) {
       const int symbols = histogram_[static_cast<std::size_t>(copies)];
       any_left = any_left || symbols > 0;
-      const int others = symbols - (last == copies ? 1 : 0);
-      if (others > 0) total += others * after_any_run(copies);
+      const int next_symbols = symbols - (copies_of_last == copies ? 1 : 0);
+      if (next_symbols > 0) total += next_symbols * count_after_any_run(copies);
     }
     if (!any_left) total = 1;
     return counts_.emplace(std::move(state), std::move(total)).first->second;
   }
 
-  BigCount after_any_run(int copies) {
+  BigCount count_after_any_run(int copies) {
     BigCount sum = 0;
     for (int run = 1; run <= max_length(copies); ++run) {
       move(copies, copies - run);
@@ -99,18 +104,18 @@ class RunCounter {
     return sum;
   }
 
-  std::vector<int> left_;
+  std::vector<int> remaining_;
   int max_run_;
   State histogram_;
   std::unordered_map<State, BigCount> counts_;
 };
 
 /// The maximum number of copies of the preceding symbol that may come first, >= 0.
-int max_continuation(const RunCounter& counter, int max_run, RunBefore before) {
-  return std::min(max_run - before.length, counter.left(before.symbol));
+int max_continuation(const RunCounter& counter, int max_run, PrecedingRun before) {
+  return std::min(max_run - before.length, counter.remaining(before.symbol));
 }
 
-BigCount count_all(RunCounter& counter, int max_run, RunBefore before) {
+BigCount count_all(RunCounter& counter, int max_run, PrecedingRun before) {
   if (before.symbol < 0) return counter.completions(-1);
   BigCount total = 0;
   const int max_length = max_continuation(counter, max_run, before);
@@ -143,15 +148,15 @@ class Descent {
 
   /// Appends the next run.
   /// \return the run's symbol
-  int append_next_run(int last) {
+  int append_next_run(int last_symbol) {
     for (int symbol = 0; symbol < counter_.symbols(); ++symbol) {
-      if (symbol == last) continue;
-      const int max_length = counter_.max_length(counter_.left(symbol));
+      if (symbol == last_symbol) continue;
+      const int max_length = counter_.max_length(counter_.remaining(symbol));
       for (int run = 1; run <= max_length; ++run) {
         if (append_if_next(symbol, run)) return symbol;
       }
     }
-    return last;
+    return last_symbol;
   }
 
   [[nodiscard]] std::vector<int>& order() { return order_; }
@@ -175,23 +180,23 @@ std::vector<BigCount> sequences_below(int symbols, int length, int max_run) {
 }
 
 /// Draws the length of the next run, in proportion to the number of sequences that can follow it.
-int draw_run(const std::vector<BigCount>& below, int left, int min_length, int max_length,
+int draw_run(const std::vector<BigCount>& below, int symbols_left, int min_length, int max_length,
              RandomStream& random) {
-  // left - r symbols follow a run of r. The numbers begin with the shortest run.
+  // A run of r symbols is followed by symbols_left - r. The numbers begin with the shortest run.
   const auto at = [&below](int length) -> const BigCount& {
     return below[static_cast<std::size_t>(length)];
   };
-  const BigCount& top = at(left - min_length + 1);
-  const BigCount number = draw_below(BigCount(top - at(left - max_length)), random);
+  const BigCount& top = at(symbols_left - min_length + 1);
+  const BigCount number = draw_below(BigCount(top - at(symbols_left - max_length)), random);
   for (int run = min_length; run < max_length; ++run) {
-    if (number < top - at(left - run)) return run;
+    if (number < top - at(symbols_left - run)) return run;
   }
   return max_length;
 }
 
 // De Bruijn cycles.
 
-constexpr int kRoot = 0;  // any vertex serves, because circuits have no beginning
+constexpr int kRoot = 0;  // any vertex will do, because circuits have no beginning
 
 /// Wilson's algorithm: walks at random from each vertex to the tree. The last exit that the walk
 /// takes from a vertex becomes its edge, which erases the walk's loops.
@@ -211,13 +216,13 @@ std::vector<int> random_arborescence(int vertices, RandomStream& random) {
 }
 
 /// The exits of one vertex in the order in which the circuit uses them.
-/// \param last  the exit that is used last; negative: any
-std::vector<int> ordered_exits(int vertices, int last, RandomStream& random) {
+/// \param last_exit  the exit that is used last; negative: any
+std::vector<int> ordered_exits(int vertices, int last_exit, RandomStream& random) {
   std::vector<int> exits(static_cast<std::size_t>(vertices));
   std::iota(exits.begin(), exits.end(), 0);
   std::span<int> free = exits;
-  if (last >= 0) {
-    std::swap(exits[static_cast<std::size_t>(last)], exits.back());
+  if (last_exit >= 0) {
+    std::swap(exits[static_cast<std::size_t>(last_exit)], exits.back());
     free = free.first(free.size() - 1);
   }
   shuffle(free, random);
@@ -234,7 +239,7 @@ std::vector<int> shuffled_numbers(int first, int count, RandomStream& random) {
 }
 
 /// Concatenates rows of a Williams design.
-std::vector<int> joined(int symbols, std::span<const int> rows) {
+std::vector<int> concatenate_rows(int symbols, std::span<const int> rows) {
   std::vector<int> order;
   for (const int row : rows) {
     const std::vector<int> permutation = williams_row(symbols, row);
@@ -243,7 +248,7 @@ std::vector<int> joined(int symbols, std::span<const int> rows) {
   return order;
 }
 
-bool respects_limit(const std::vector<int>& order, int max_run, RunBefore before) {
+bool respects_limit(const std::vector<int>& order, int max_run, PrecedingRun before) {
   return std::ranges::all_of(order, [&](int symbol) {
     before = run_at_end({symbol}, before);
     return before.length <= max_run;
@@ -251,18 +256,19 @@ bool respects_limit(const std::vector<int>& order, int max_run, RunBefore before
 }
 
 /// Draws `rows` rows of the square that starts at row `first`, in an order that respects the limit.
-std::vector<int> square_rows(int symbols, int first, int rows, int max_run, RunBefore before,
+std::vector<int> square_rows(int symbols, int first, int rows, int max_run, PrecedingRun before,
                              RandomStream& random) {
   while (true) {
     const std::vector<int> all = shuffled_numbers(first, symbols, random);
-    std::vector<int> order = joined(symbols, std::span(all).first(static_cast<std::size_t>(rows)));
+    std::vector<int> order =
+        concatenate_rows(symbols, std::span(all).first(static_cast<std::size_t>(rows)));
     if (max_run == 0 || respects_limit(order, max_run, before)) return order;
   }
 }
 
 }  // namespace
 
-bool limited_order_exists(const std::vector<int>& counts, int max_run, RunBefore before) {
+bool limited_order_exists(const std::vector<int>& counts, int max_run, PrecedingRun before) {
   const int total = std::accumulate(counts.begin(), counts.end(), 0);
   for (int symbol = 0; symbol < static_cast<int>(counts.size()); ++symbol) {
     const int copies = counts[static_cast<std::size_t>(symbol)];
@@ -288,7 +294,7 @@ bool limited_orders_are_countable(const std::vector<int>& counts, int max_run) {
 }
 
 std::optional<std::vector<int>> draw_limited_order(const std::vector<int>& counts, int max_run,
-                                                   RunBefore before, RandomStream& random) {
+                                                   PrecedingRun before, RandomStream& random) {
   RunCounter counter(counts, max_run);
   const BigCount total = count_all(counter, max_run, before);
   if (total == 0) return std::nullopt;
@@ -300,32 +306,34 @@ std::optional<std::vector<int>> draw_limited_order(const std::vector<int>& count
     }
   }
   const auto length = static_cast<std::size_t>(std::accumulate(counts.begin(), counts.end(), 0));
-  int last = before.symbol;
-  while (descent.order().size() < length) last = descent.append_next_run(last);
+  int last_symbol = before.symbol;
+  while (descent.order().size() < length) last_symbol = descent.append_next_run(last_symbol);
   return descent.order();
 }
 
-std::vector<int> draw_limited_sequence(int symbols, int length, int max_run, RunBefore before,
+std::vector<int> draw_limited_sequence(int symbols, int length, int max_run, PrecedingRun before,
                                        RandomStream& random) {
   const std::vector<BigCount> counts = sequences_below(symbols, length, max_run);
   std::vector<int> sequence;
-  int last = before.symbol;
-  int left = length;
+  int last_symbol = before.symbol;
+  int symbols_left = length;
   const auto append = [&](int run) {
-    sequence.insert(sequence.end(), static_cast<std::size_t>(run), last);
-    left -= run;
+    sequence.insert(sequence.end(), static_cast<std::size_t>(run), last_symbol);
+    symbols_left -= run;
   };
-  if (last >= 0) append(draw_run(counts, left, 0, std::min(max_run - before.length, left), random));
-  while (left > 0) {
-    const int others = last < 0 ? symbols : symbols - 1;
-    const auto drawn = static_cast<int>(random.below(static_cast<std::uint64_t>(others)));
-    last = last >= 0 && drawn >= last ? drawn + 1 : drawn;
-    append(draw_run(counts, left, 1, std::min(max_run, left), random));
+  if (last_symbol >= 0)
+    append(
+        draw_run(counts, symbols_left, 0, std::min(max_run - before.length, symbols_left), random));
+  while (symbols_left > 0) {
+    const int choices = last_symbol < 0 ? symbols : symbols - 1;
+    const auto drawn = static_cast<int>(random.below(static_cast<std::uint64_t>(choices)));
+    last_symbol = last_symbol >= 0 && drawn >= last_symbol ? drawn + 1 : drawn;
+    append(draw_run(counts, symbols_left, 1, std::min(max_run, symbols_left), random));
   }
   return sequence;
 }
 
-RunBefore run_at_end(const std::vector<int>& order, RunBefore before) {
+PrecedingRun run_at_end(const std::vector<int>& order, PrecedingRun before) {
   for (const int symbol : order) {
     before.length = symbol == before.symbol ? before.length + 1 : 1;
     before.symbol = symbol;
@@ -367,7 +375,7 @@ std::vector<int> williams_row(int symbols, int number) {
     const int first_row = i % 2 == 1 ? (i + 1) / 2 : (symbols - i / 2) % symbols;
     order.push_back((first_row + row) % symbols);
   }
-  // One odd square alone is unbalanced; its mirror image has the missing pairs of neighbours.
+  // A single odd square is unbalanced; its mirror image has the missing pairs of neighbours.
   if (odd && row >= symbols) return {order.rbegin(), order.rend()};
   return order;
 }
@@ -376,24 +384,25 @@ bool williams_order_exists(int symbols, int rows, int max_run) {
   return symbols > 2 || rows < 2 || max_run > 1;
 }
 
-std::vector<int> random_williams_order(int symbols, int rows, int max_run, RunBefore before,
+std::vector<int> random_williams_order(int symbols, int rows, int max_run, PrecedingRun before,
                                        RandomStream& random) {
-  const std::vector<int> names = shuffled_numbers(0, symbols, random);
+  const std::vector<int> permutation = shuffled_numbers(0, symbols, random);
   if (before.symbol >= 0) {
-    before.symbol = static_cast<int>(std::ranges::find(names, before.symbol) - names.begin());
+    before.symbol =
+        static_cast<int>(std::ranges::find(permutation, before.symbol) - permutation.begin());
   }
   std::vector<int> order;
   std::vector<int> squares;
-  for (int left = rows; left > 0; left -= symbols) {
+  for (int rows_left = rows; rows_left > 0; rows_left -= symbols) {
     if (squares.empty()) squares = shuffled_numbers(0, symbols % 2 == 0 ? 1 : 2, random);
     const int first = squares.back() * symbols;
     squares.pop_back();
     const std::vector<int> drawn =
-        square_rows(symbols, first, std::min(left, symbols), max_run, before, random);
+        square_rows(symbols, first, std::min(rows_left, symbols), max_run, before, random);
     before = run_at_end(drawn, before);
     order.insert(order.end(), drawn.begin(), drawn.end());
   }
-  for (int& symbol : order) symbol = names[static_cast<std::size_t>(symbol)];
+  for (int& symbol : order) symbol = permutation[static_cast<std::size_t>(symbol)];
   return order;
 }
 

@@ -12,20 +12,19 @@
 namespace touchtrial::study {
 
 /// The run that precedes an order.
-struct RunBefore {
-  int symbol = -1;  ///< negative: nothing came before
+struct PrecedingRun {
+  int symbol = -1;  ///< negative: no symbol precedes
   int length = 0;   ///< at most the limit on runs
 };
 
 /// The run at the end of an order that comes after `before`.
-[[nodiscard]] RunBefore run_at_end(const std::vector<int>& order, RunBefore before);
+[[nodiscard]] PrecedingRun run_at_end(const std::vector<int>& order, PrecedingRun before);
 
 /// Whether `counts[s]` copies of each symbol s can be ordered without a run longer than `max_run`.
-/// Each symbol needs a place between other symbols (or at an end) for every `max_run` of its
-/// copies.
+/// Every `max_run` copies of a symbol need a place between other symbols or at an end.
 /// \param max_run  at least 1
 [[nodiscard]] bool limited_order_exists(const std::vector<int>& counts, int max_run,
-                                        RunBefore before = {});
+                                        PrecedingRun before = {});
 
 /// Whether counting and drawing take less than about a second and 100 MB. The number of states is
 /// the number of multisets of remaining copies, because symbols with the same number of copies left
@@ -35,7 +34,7 @@ struct RunBefore {
 /// Draws an order without a run longer than `max_run`; all such orders are equally likely.
 /// \return the order, or nothing if none exists
 [[nodiscard]] std::optional<std::vector<int>> draw_limited_order(const std::vector<int>& counts,
-                                                                 int max_run, RunBefore before,
+                                                                 int max_run, PrecedingRun before,
                                                                  RandomStream& random);
 
 /// Draws a sequence of symbols; all sequences without a run longer than `max_run` are equally
@@ -43,7 +42,7 @@ struct RunBefore {
 /// \param symbols  at least 2, so that such a sequence exists
 /// \param length  not negative
 [[nodiscard]] std::vector<int> draw_limited_sequence(int symbols, int length, int max_run,
-                                                     RunBefore before, RandomStream& random);
+                                                     PrecedingRun before, RandomStream& random);
 
 /// Draws a de Bruijn cycle of order 2 that starts at a random place; all cycles are equally likely.
 /// A cycle has k * k symbols, in which every ordered pair (also of equal symbols) occurs once as
@@ -84,6 +83,6 @@ struct RunBefore {
 /// \param max_run  0: no limit
 /// \pre williams_order_exists(symbols, rows, max_run) if max_run > 0
 [[nodiscard]] std::vector<int> random_williams_order(int symbols, int rows, int max_run,
-                                                     RunBefore before, RandomStream& random);
+                                                     PrecedingRun before, RandomStream& random);
 
 }  // namespace touchtrial::study

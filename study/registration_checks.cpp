@@ -14,8 +14,8 @@ std::optional<int> day_sheet_item(std::string_view code) {
   const std::string beginning = "no-day-sheet-";
   if (!code.starts_with(beginning)) return std::nullopt;
   const std::optional<int> item = number_in<int>(code.substr(beginning.size()));
-  const bool is_one = item && *item > 0 && code == beginning + std::to_string(*item);
-  return is_one ? item : std::nullopt;
+  const bool is_valid = item && *item > 0 && code == beginning + std::to_string(*item);
+  return is_valid ? item : std::nullopt;
 }
 
 void check_methods(const JsonValue& file, const Study& study) {
@@ -103,21 +103,22 @@ void check_protocol(const JsonValue& file, const Study& study) {
                                  "primary_test");
   }
   std::vector<std::string> names;
-  for (const Estimand one : supported) names.emplace_back(name_of(one));
+  for (const Estimand supported_estimand : supported)
+    names.emplace_back(name_of(supported_estimand));
   file.refuse_below(place, what + "; use one of: " + listed(names));
 }
 
 void check_estimand(const JsonValue& file, const Study& study) {
   const RegisteredAnalysis& analysis = *study.registration.analysis;
   const char* const place = "/registration/estimand";
-  if (is_of_thresholds(analysis.estimand)) {
+  if (is_threshold_estimand(analysis.estimand)) {
     if (analysis.test == RegisteredTest::t) return;
     file.refuse_below("/registration/test",
                       "does not apply to thresholds; use \"t\", or remove it");
   }
-  const bool several = study.presented_methods() > 1;
+  const bool has_several_methods = study.presented_methods() > 1;
   if (analysis.estimand == Estimand::difference) {
-    if (!several) {
+    if (!has_several_methods) {
       file.refuse_below(place,
                         "is a difference of methods, but the study presents only one; use "
                         "\"mean-accuracy\"");
@@ -126,7 +127,7 @@ void check_estimand(const JsonValue& file, const Study& study) {
     if (analysis.test == RegisteredTest::crossover) check_crossover(file, study);
     return;
   }
-  if (several) {
+  if (has_several_methods) {
     file.refuse_below(place,
                       "is the accuracy with one method, but the study compares several; use "
                       "\"difference\"");
@@ -168,8 +169,7 @@ void check_missed_catch(const JsonValue& file, const Study& study) {
   const int trials = study.task->answered_catches(study);
   if (trials == 0) {
     file.refuse_below(place,
-                      "needs catch trials with a right answer, of which the study has none; remove "
-                      "it");
+                      "needs catch trials with a right answer, but the study has none; remove it");
   }
   if (*rules->missed_catch >= trials) {
     file.refuse_below(place, "is " + std::to_string(*rules->missed_catch) + ", but a session has " +

@@ -1,4 +1,4 @@
-/// \file The study file's "registration".
+/// \file Describes the study file's "registration".
 #include "core/text.hpp"
 #include "study/deviation_codes.hpp"
 #include "study/study_sections.hpp"
@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMaxParticipants = 100'000;
 constexpr std::size_t kMaxCodes = 64;
-constexpr std::size_t kMaxCodeBytes = 64;  // bytes
+constexpr std::size_t kMaxCodeBytes = 64;
 constexpr NumberRange kShare{.low = 0.0, .high = 1.0, .open_low = true};
 constexpr NumberRange kDecibels{0.0, 200.0, true};
 constexpr double kMinAlpha = 1e-6;
@@ -39,17 +39,18 @@ void describe_codes(ObjectIo& io, std::string_view key, const TextRule& rule, bo
 }
 
 void describe_exclusion_rules(ObjectIo& io, ExclusionRules& rules) {
-  const auto own = std::ranges::find_if_not(rules.deviations, is_deviation_code);
-  std::vector<std::string> programs(rules.deviations.begin(), own);
-  std::vector<std::string> laboratory(own, rules.deviations.end());
-  describe_codes(io, "deviations", kDeviation, true, programs,
+  const auto first_custom = std::ranges::find_if_not(rules.deviations, is_deviation_code);
+  std::vector<std::string> built_in(rules.deviations.begin(), first_custom);
+  std::vector<std::string> custom(first_custom, rules.deviations.end());
+  describe_codes(io, "deviations", kDeviation, true, built_in,
                  "a session with one of these [deviations](data-dictionary.md) is excluded; only "
                  "codes that the program records are accepted");
-  describe_codes(io, "own_deviations", kLine<kMaxCodeBytes>, !laboratory.empty(), laboratory,
-                 "likewise for custom codes, which experimenters enter during a session or with "
-                 "`note --deviation`");
-  rules.deviations = programs;
-  rules.deviations.insert(rules.deviations.end(), laboratory.begin(), laboratory.end());
+  describe_codes(
+      io, "own_deviations", kLine<kMaxCodeBytes>, !custom.empty(), custom,
+      "a session with one of these custom codes is excluded; experimenters enter them during "
+      "a session or with `note --deviation`");
+  rules.deviations = built_in;
+  rules.deviations.insert(rules.deviations.end(), custom.begin(), custom.end());
   std::stable_partition(rules.deviations.begin(), rules.deviations.end(), is_deviation_code);
   io.number("invalid_trials", rules.invalid_trials, {.low = 0.0, .high = 1.0},
             {"a session with a larger share of invalid trials is excluded"});
@@ -92,11 +93,11 @@ void refuse_keys(const JsonObject& object, std::span<const std::string_view> key
 
 /// Refuses keys that do not apply to the estimand.
 void check_keys(const JsonObject& object, Estimand estimand) {
-  const std::string of = ", not to \"" + std::string(name_of(estimand)) + "\"; remove it";
-  if (!is_of_thresholds(estimand)) {
-    return refuse_keys(object, kKeysOfThresholds, "applies to thresholds" + of);
+  const std::string suffix = ", not to \"" + std::string(name_of(estimand)) + "\"; remove it";
+  if (!is_threshold_estimand(estimand)) {
+    return refuse_keys(object, kKeysOfThresholds, "applies to thresholds" + suffix);
   }
-  refuse_keys(object, kKeysOfAccuracies, "applies to right answers" + of);
+  refuse_keys(object, kKeysOfAccuracies, "applies to right answers" + suffix);
   if (estimand == Estimand::mean_threshold) {
     return refuse_keys(
         object, kKeysOfTests,
@@ -122,7 +123,7 @@ RegisteredAnalysis default_analysis(Estimand estimand, bool has_margin,
   RegisteredAnalysis analysis;
   analysis.estimand = estimand;
   if (estimand == Estimand::mean_accuracy) return analysis;
-  if (is_of_thresholds(estimand)) {
+  if (is_threshold_estimand(estimand)) {
     analysis.one_sided = estimand == Estimand::threshold_equality;
     return analysis;
   }
@@ -134,31 +135,31 @@ RegisteredAnalysis default_analysis(Estimand estimand, bool has_margin,
 
 /// Describes a number that has one key for accuracies and another for thresholds.
 void describe_size(ObjectIo& io, std::string_view key, std::optional<double>& size,
-                   const NumberRange& range, bool is_here, const KeyInfo& info) {
-  std::optional<double> own = is_here ? size : std::nullopt;
-  io.number(key, own, range, info);
-  if (own) size = own;
+                   const NumberRange& range, bool applies, const KeyInfo& info) {
+  std::optional<double> value = applies ? size : std::nullopt;
+  io.number(key, value, range, info);
+  if (value) size = value;
 }
 
 void describe_sizes(ObjectIo& io, RegisteredAnalysis& analysis) {
-  const bool of_thresholds = is_of_thresholds(analysis.estimand);
-  describe_size(io, "smallest_effect", analysis.smallest_effect, kShare, !of_thresholds,
+  const bool is_threshold = is_threshold_estimand(analysis.estimand);
+  describe_size(io, "smallest_effect", analysis.smallest_effect, kShare, !is_threshold,
                 {"smallest effect of interest: an accuracy above chance (0.4: 40 % right), or a "
                  "difference (0.07: 7 points)"});
   describe_size(
-      io, "margin", analysis.margin, kShare, !of_thresholds,
+      io, "margin", analysis.margin, kShare, !is_threshold,
       {"margin of a difference, instead of `smallest_effect`: the first method is as good as the "
        "second if it is worse by less than this "
        "([non-inferiority](statistics.md#as-good-by-a-margin)); one-sided, by `t` or `crossover`"});
-  describe_size(io, "smallest_effect_db", analysis.smallest_effect, kDecibels, of_thresholds,
+  describe_size(io, "smallest_effect_db", analysis.smallest_effect, kDecibels, is_threshold,
                 {"for `threshold-difference`: smallest difference of interest"});
-  describe_size(io, "margin_db", analysis.margin, kDecibels, of_thresholds,
+  describe_size(io, "margin_db", analysis.margin, kDecibels, is_threshold,
                 {.meaning = "required for `threshold-equality`: thresholds are equal if every "
                             "pairwise difference is smaller than this, in either direction",
                  .default_text = "none"});
 }
 
-/// Which test, at how many looks.
+/// Describes the test and its interim looks.
 void describe_test(ObjectIo& io, RegisteredAnalysis& analysis) {
   const bool has_test = analysis.estimand != Estimand::mean_threshold;
   io.choice("test", analysis.test, kRegisteredTestNames,
@@ -189,10 +190,10 @@ void describe_test(ObjectIo& io, RegisteredAnalysis& analysis) {
 }
 
 void describe_analysis(ObjectIo& io, RegisteredAnalysis& analysis) {
-  const bool of_thresholds = is_of_thresholds(analysis.estimand);
+  const bool is_threshold = is_threshold_estimand(analysis.estimand);
   io.list("methods", analysis.methods, {.max = 2},
           {.meaning = "for a difference: the first minus the second",
-           .written = !of_thresholds,
+           .written = !is_threshold,
            .default_text = "the study's two",
            .range = "none or two labels"},
           [](ValueIo& value, std::string& label) { value.text(label, kPlainName); });
@@ -200,10 +201,12 @@ void describe_analysis(ObjectIo& io, RegisteredAnalysis& analysis) {
           {.meaning =
                "for thresholds: a difference is the first minus the second. `class` (label) or "
                "`value` (one of the study's `standards`) can be omitted if the study has only one",
-           .written = of_thresholds,
+           .written = is_threshold,
            .default_text = "all of the study",
            .range = "`class` and `value`"},
-          [](ValueIo& value, RegisteredStandard& one) { value.part(one, describe_standard); });
+          [](ValueIo& value, RegisteredStandard& standard) {
+            value.part(standard, describe_standard);
+          });
   io.number("alpha", analysis.alpha, {.low = kMinAlpha, .high = 0.5},
             {"error rate of the test over all looks"});
   describe_sizes(io, analysis);
@@ -258,7 +261,7 @@ void describe(ObjectIo& io, Registration& registration, RegisteredTest default_t
                           "standard, the difference of two standards, or the equality of two or "
                           "more. Each protocol supports some of these; ratings support none",
                .default_text = "none"},
-              [](ValueIo& value, Estimand& one) { value.choice(one, kEstimandNames); });
+              [](ValueIo& value, Estimand& choice) { value.choice(choice, kEstimandNames); });
   io.rule([&](const JsonValue& /*place*/, const JsonObject& object) {
     if (!estimand) {
       return refuse_keys(object, kAnalysisKeys,
@@ -268,8 +271,8 @@ void describe(ObjectIo& io, Registration& registration, RegisteredTest default_t
     registration.analysis =
         default_analysis(*estimand, object.find("margin").has_value(), default_test);
   });
-  RegisteredAnalysis none;
-  describe_analysis(io, registration.analysis ? *registration.analysis : none);
+  RegisteredAnalysis defaults;
+  describe_analysis(io, registration.analysis ? *registration.analysis : defaults);
   io.integer("safety_record_years", registration.safety_record_years, 0, 100,
              {"years for which the safety record of a session is kept if the participant's data "
               "are erased (`withdraw --erase`); unencrypted in every database"});

@@ -24,14 +24,16 @@ std::string standard_words(const RegisteredStandard& standard) {
 
 std::string threshold_words(const RegisteredAnalysis& analysis) {
   std::vector<std::string> standards;
-  for (const RegisteredStandard& one : analysis.standards) standards.push_back(standard_words(one));
+  for (const RegisteredStandard& standard : analysis.standards) {
+    standards.push_back(standard_words(standard));
+  }
   const std::string mean = "mean over participants of the threshold";
   switch (analysis.estimand) {
     case Estimand::mean_threshold:
       return mean + (standards.empty() ? "" : ", standard " + standards.front());
     case Estimand::threshold_difference:
       if (standards.empty()) return mean + " at the first standard minus that at the second";
-      return mean + ", standard " + standards.front() + " less standard " + standards.back();
+      return mean + ", standard " + standards.front() + " minus standard " + standards.back();
     default:
       break;
   }
@@ -54,8 +56,8 @@ std::string name_in_words(RegisteredTest test) {
 
 Field margin_field(const RegisteredAnalysis& analysis) {
   const std::string level = per_cent_text(1.0 - 2.0 * analysis.alpha) + " %";
-  if (is_of_thresholds(analysis.estimand)) {
-    return {"margin", "the same if every difference is less than " + number_text(*analysis.margin) +
+  if (is_threshold_estimand(analysis.estimand)) {
+    return {"margin", "equal if every difference is less than " + number_text(*analysis.margin) +
                           " dB either way; decided by the " + level +
                           " intervals; no conclusion is drawn if more than half of the "
                           "participants have no threshold at one of the standards"};
@@ -68,15 +70,15 @@ Field margin_field(const RegisteredAnalysis& analysis) {
 }  // namespace
 
 std::string estimand_words(const RegisteredAnalysis& analysis) {
-  if (is_of_thresholds(analysis.estimand)) return threshold_words(analysis);
+  if (is_threshold_estimand(analysis.estimand)) return threshold_words(analysis);
   if (analysis.estimand == Estimand::mean_accuracy) {
     return "mean over participants of the proportion of right answers, against chance";
   }
-  const std::string of =
+  const std::string methods =
       analysis.methods.empty()
           ? " with the first method minus that with the second"
           : " with " + analysis.methods[0] + " minus that with " + analysis.methods[1];
-  return "mean over participants of the accuracy" + of;
+  return "mean over participants of the accuracy" + methods;
 }
 
 std::string test_words(const RegisteredAnalysis& analysis) {
@@ -112,13 +114,14 @@ std::string rules_words(const ExclusionRules& rules) {
 
 std::pair<std::string, std::string> size_field(const RegisteredAnalysis& analysis) {
   if (analysis.margin) return margin_field(analysis);
-  const auto worth = [&]() -> std::string {
+  const auto size = [&]() -> std::string {
     if (!analysis.smallest_effect) return "not stated";
-    if (is_of_thresholds(analysis.estimand)) return number_text(*analysis.smallest_effect) + " dB";
-    const bool accuracy = analysis.estimand == Estimand::mean_accuracy;
-    return per_cent_text(*analysis.smallest_effect) + (accuracy ? " % right" : " points");
+    if (is_threshold_estimand(analysis.estimand))
+      return number_text(*analysis.smallest_effect) + " dB";
+    const bool is_accuracy = analysis.estimand == Estimand::mean_accuracy;
+    return per_cent_text(*analysis.smallest_effect) + (is_accuracy ? " % right" : " points");
   };
-  return {"smallest worth having", worth()};
+  return {"smallest worth having", size()};
 }
 
 std::vector<std::pair<std::string, std::string>> fields_of(const Registration& registration) {
@@ -135,7 +138,7 @@ std::vector<std::pair<std::string, std::string>> fields_of(const Registration& r
        analysis.exclusion_rules ? rules_words(*analysis.exclusion_rules) : "not stated"}};
   if (analysis.visits != RegisteredVisits::all) {
     const bool first = analysis.visits == RegisteredVisits::first;
-    fields.emplace_back("visits", first ? "the first alone" : "the last alone");
+    fields.emplace_back("visits", first ? "only the first" : "only the last");
   }
   return fields;
 }

@@ -29,9 +29,9 @@ struct StimulusIndex {
 enum class Role {
   scored,
   lead_in,      ///< an unscored trial at the start of a block
-  catch_trial,  ///< tests whether the participant attends
+  catch_trial,  ///< tests the participant's attention
   control,      ///< with the hand off: tests whether the answer can be heard
-  practice,     ///< before the first trial; not part of a schedule
+  practice,     ///< precedes the first trial; not part of a schedule
 };
 
 /// "scored", "lead-in", "catch", "control" or "practice"
@@ -68,7 +68,7 @@ struct Level {
 struct Trial {
   Place place{};
   Role role = Role::scored;
-  /// Empty: chosen when the trial is due (Order::at).
+  /// The planes to present. Empty: Order::at chooses them when the trial is due.
   std::vector<Plane> planes{};
   std::optional<int> right{};  ///< index of the right choice; empty: no choice is right
   std::optional<Level> level{};
@@ -90,9 +90,9 @@ struct Schedule {
   /// \return nothing if the answer is a rating
   /// \pre the layout has the position
   [[nodiscard]] std::optional<int> choice_of(const Answer& answer) const {
-    const auto* const chosen = std::get_if<Chosen>(&answer);
-    if (chosen == nullptr) return std::nullopt;
-    return layout.at(static_cast<std::size_t>(chosen->position));
+    const auto* const choice = std::get_if<ChoiceAnswer>(&answer);
+    if (choice == nullptr) return std::nullopt;
+    return layout.at(static_cast<std::size_t>(choice->position));
   }
 
   friend bool operator==(const Schedule&, const Schedule&) = default;
@@ -102,7 +102,7 @@ struct Schedule {
 struct ScheduleDraw {
   SecretKey secret{};    ///< unique to this participant
   int method_order = 0;  ///< row of the Williams design of methods, from 0
-  /// In a study that divides its methods between visits: the visit, from 1; 0: all visits together.
+  /// The visit, from 1, in a study that divides its methods between visits; 0: all visits together.
   int visit = 0;
 };
 

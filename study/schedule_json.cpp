@@ -23,7 +23,7 @@ constexpr auto kRoles = std::to_array<Named<Role>>({{"scored", Role::scored},
   throw StoreError("session schedule: " + what + "; use the key that the session was run with");
 }
 
-StimulusIndex meaning_of(const json& code, const StudyCodes& codes) {
+StimulusIndex stimulus_of(const json& code, const StudyCodes& codes) {
   const auto stimulus = codes.stimulus_of(code.get<std::string>());
   if (!stimulus) refuse("contains a code that this key does not have");
   return *stimulus;
@@ -36,10 +36,10 @@ Role role_of(const std::string& word) {
 
 /// All fields have the same wall, so blank planes share one code.
 json json_of(const Plane& plane, const StudyCodes& codes) {
-  const bool is_anywhere = plane == Plane{.field = {}, .blank = true};
-  json object = {{"code", is_anywhere ? codes.catch_code : codes.code_of(plane.field)}};
+  const bool is_plain_blank = plane == Plane{.field = {}, .blank = true};
+  json object = {{"code", is_plain_blank ? codes.catch_code : codes.code_of(plane.field)}};
   // Default values are omitted.
-  if (plane.blank && !is_anywhere) object["blank"] = true;
+  if (plane.blank && !is_plain_blank) object["blank"] = true;
   if (plane.gain_db != 0.0) object["gain_db"] = plane.gain_db;
   if (plane.pitch != 1.0) object["pitch"] = plane.pitch;
   if (plane.mix) object["mix"] = {codes.code_of(plane.mix->other), plane.mix->share};
@@ -52,12 +52,12 @@ Plane plane_from(const json& object, const StudyCodes& codes) {
     plane.blank = true;
     return plane;
   }
-  plane.field = meaning_of(object.at("code"), codes);
+  plane.field = stimulus_of(object.at("code"), codes);
   plane.blank = object.value("blank", false);
   plane.gain_db = object.value("gain_db", 0.0);
   plane.pitch = object.value("pitch", 1.0);
   if (const auto mix = object.find("mix"); mix != object.end()) {
-    plane.mix = Mix{meaning_of(mix->at(0), codes), mix->at(1).get<double>()};
+    plane.mix = Mix{stimulus_of(mix->at(0), codes), mix->at(1).get<double>()};
   }
   return plane;
 }
@@ -90,7 +90,7 @@ Trial trial_from(const json& object, const StudyCodes& codes) {
     trial.level = Level{level->at(0).get<int>(), level->at(1).get<int>()};
   }
   if (const auto picture = object.find("picture"); picture != object.end()) {
-    trial.picture = meaning_of(*picture, codes).class_index;
+    trial.picture = stimulus_of(*picture, codes).class_index;
   }
   if (object.contains("code")) trial.planes.push_back(plane_from(object, codes));
   if (const auto planes = object.find("planes"); planes != object.end()) {
@@ -120,9 +120,9 @@ json parsed_json(const std::string& text) {
 void check_layout(const std::vector<int>& layout, std::size_t choices) {
   std::vector<int> sorted = layout;
   std::ranges::sort(sorted);
-  const bool each_once = std::ranges::adjacent_find(sorted) == sorted.end();
+  const bool are_unique = std::ranges::adjacent_find(sorted) == sorted.end();
   const auto in_range = [&](int choice) { return choice >= 0 && choice < std::ssize(sorted); };
-  if (!each_once || sorted.size() != choices || !std::ranges::all_of(sorted, in_range)) {
+  if (!are_unique || sorted.size() != choices || !std::ranges::all_of(sorted, in_range)) {
     refuse("its layout does not contain every choice exactly once");
   }
 }
@@ -132,7 +132,7 @@ Schedule schedule_of(const json& document, const StudyCodes& codes) {
   schedule.trials = trials_from(document.at("presentations"), codes);
   for (const json& choice : document.at("layout")) {
     schedule.layout.push_back(choice.is_number() ? choice.get<int>()
-                                                 : meaning_of(choice, codes).class_index);
+                                                 : stimulus_of(choice, codes).class_index);
   }
   check_layout(schedule.layout, choices_of(codes.study).size());
   return schedule;

@@ -43,7 +43,7 @@ struct Question {
   Translated text;
   std::vector<Translated> options;  ///< answers of a choice, >= 2
   bool required = false;
-  std::optional<double> min{};  ///< of a number
+  std::optional<double> min{};  ///< bounds of a number
   std::optional<double> max{};
 
   friend bool operator==(const Question&, const Question&) = default;
@@ -80,34 +80,34 @@ struct SessionPlan {
   std::string language = "en";  ///< of the participant's texts; one of language_codes()
   /// Pages of instructions by language; empty: the built-in ones.
   std::map<std::string, std::vector<std::string>> instructions;
-  std::map<std::string, Texts> texts;  ///< by language; replace built-in texts
+  std::map<std::string, Texts> texts;  ///< by language; these replace built-in texts
   double text_scale = 1.0;             ///< of the participant's screens, 1 to kMaxTextScale
   bool high_contrast = false;          ///< whether these screens are black on white
   Sight sight = Sight::curtain;
   MaskingPlan masking;
-  bool handedness = true;                   ///< whether to ask the handedness inventory
-  int confidence_levels = 0;                ///< 2 to 9; 0: confidence is not asked
-  std::vector<std::string> day_sheet;       ///< items in addition to the built-in ones
-  std::string consent_version;              ///< version that participants sign; may be empty
-  std::string ethics_number;                ///< may be empty
+  bool handedness = true;              ///< whether to ask the handedness inventory
+  int confidence_levels = 0;           ///< 2 to 9; 0: confidence is not asked
+  std::vector<std::string> day_sheet;  ///< items in addition to the built-in ones
+  std::string consent_version;         ///< version of the form that participants sign; may be empty
+  std::string ethics_number;           ///< may be empty
   std::vector<Question> closing_questions;  ///< in addition to the built-in ones
   bool closing = true;                      ///< whether to ask the built-in closing questions
 
   friend bool operator==(const SessionPlan&, const SessionPlan&) = default;
 };
 
-/// What each visit presents.
+/// The methods that each visit presents.
 enum class VisitMethods {
-  all,     ///< every method, in the participant's one order
-  divided  ///< an equal share of the methods at each visit, in that order
+  all,     ///< every method, in the participant's order
+  divided  ///< an equal share of the methods, in that order
 };
 
 /// The study file's "visits". Days are periods of 24 hours between the starts of two visits'
 /// sessions.
 struct VisitPlan {
   int count = 1;
-  double min_days = 0.0;             ///< between visits; an earlier one is refused
-  std::optional<double> max_days{};  ///< between visits; a later one is a deviation
+  double min_days = 0.0;             ///< minimum between visits; an earlier visit is refused
+  std::optional<double> max_days{};  ///< maximum between visits; a later visit is a deviation
   VisitMethods methods = VisitMethods::all;
 
   friend bool operator==(const VisitPlan&, const VisitPlan&) = default;
@@ -130,17 +130,17 @@ struct GroupPlan {
 /// The visits that enter a registered analysis.
 enum class RegisteredVisits { all, first, last };
 
-/// The quantity that a registration is about.
+/// The quantity that a registered analysis estimates.
 enum class Estimand {
   mean_accuracy,  ///< mean over participants of the share of right answers, against chance
-  difference,     ///< mean over participants of the accuracy with one method less that with another
+  difference,  ///< mean over participants of the accuracy with one method minus that with another
   mean_threshold,  ///< mean over participants of the threshold at one standard, without a test
-  threshold_difference,  ///< the same at one standard minus that at another, against 0
-  threshold_equality,    ///< whether all differences between standards lie within a margin
+  threshold_difference,  ///< mean threshold at one standard minus that at another, against 0
+  threshold_equality,    ///< whether all differences between standards are within a margin
 };
 
 /// Whether the estimand is in dB, the unit of thresholds; otherwise it is a share of right answers.
-[[nodiscard]] constexpr bool is_of_thresholds(Estimand estimand) noexcept {
+[[nodiscard]] constexpr bool is_threshold_estimand(Estimand estimand) noexcept {
   return estimand != Estimand::mean_accuracy && estimand != Estimand::difference;
 }
 
@@ -182,18 +182,20 @@ struct RegisteredStandard {
 /// The part of a registration that the program checks and analyses.
 struct RegisteredAnalysis {
   Estimand estimand = Estimand::mean_accuracy;
-  /// Labels; the difference is the first minus the second. Empty: the study's two methods.
+  /// Labels of methods; the difference is the first minus the second. Empty: the study's two
+  /// methods.
   std::vector<std::string> methods{};
-  /// Of thresholds; a difference is the first minus the second. Empty: all standards of the study.
+  /// Standards, for thresholds; a difference is the first minus the second. Empty: all standards of
+  /// the study.
   std::vector<RegisteredStandard> standards{};
   RegisteredTest test = RegisteredTest::t;
-  bool one_sided = true;  ///< against larger values
+  bool one_sided = true;  ///< whether only larger values count against the null hypothesis
   double alpha = 0.05;    ///< 1e-6 .. 0.5
-  /// Smallest effect of interest: an accuracy, a difference of accuracies, or one of thresholds,
-  /// dB.
+  /// The smallest effect of interest: an accuracy, a difference of accuracies, or a difference of
+  /// thresholds in dB.
   std::optional<double> smallest_effect{};
-  /// Of non-inferiority: by how much the first method may be worse, in (0, 1].
-  /// Of threshold_equality: by how much two thresholds may differ, dB.
+  /// The allowed difference. Non-inferiority: how much worse the first method may be, in (0, 1].
+  /// threshold_equality: between two thresholds, dB.
   std::optional<double> margin{};
   std::vector<int> looks{};  ///< numbers of participants at interim looks, ascending
   Spending spending = Spending::obrien_fleming;

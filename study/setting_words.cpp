@@ -17,8 +17,8 @@ namespace {
 using engine::ExtractionOptions;
 using engine::RenderingOptions;
 
-/// A larger number of methods is summarised in one line if they differ only in their order.
-constexpr std::size_t kMethodsByName = 4;
+/// More methods than this are summarised in one line if they differ only in their order.
+constexpr std::size_t kMaxListedMethods = 4;
 
 std::string mask_words(const ExtractionOptions& method) {
   static constexpr auto kWords =
@@ -54,13 +54,14 @@ std::string kernel_words(const engine::TvGaborOptions& options) {
   if (options.automatic) return "the image's strongest oscillation";
   const auto& components = options.components;
   const double frequency = components.front().frequency_cycles_per_px;
-  const bool is_one = std::ranges::all_of(components, [&](const engine::GaborComponent& one) {
-    return one.frequency_cycles_per_px == frequency;
-  });
-  if (!is_one) return listed(components, " and ", component_words);
+  const bool is_shared =
+      std::ranges::all_of(components, [&](const engine::GaborComponent& component) {
+        return component.frequency_cycles_per_px == frequency;
+      });
+  if (!is_shared) return listed(components, " and ", component_words);
   return number_text(frequency) + " cycles per pixel at " +
-         listed(components, " and ", [](const engine::GaborComponent& one) {
-           return number_text(one.direction_deg) + "°";
+         listed(components, " and ", [](const engine::GaborComponent& component) {
+           return number_text(component.direction_deg) + "°";
          });
 }
 
@@ -72,13 +73,13 @@ std::string tv_gabor_words(const engine::TvGaborOptions& options) {
       options.max_steps);
 }
 
-/// Whether all methods have a fixed order and differ in nothing else.
-bool differ_in_order(std::span<const StudyMethod> methods) {
-  return std::ranges::all_of(methods, [&](const StudyMethod& one) {
-    ExtractionOptions same = one;
-    same.order = methods.front().order;
-    return one.method == engine::Method::fixed &&
-           same == static_cast<const ExtractionOptions&>(methods.front());
+/// Whether all methods have a fixed order and differ only in it.
+bool differ_only_in_order(std::span<const StudyMethod> methods) {
+  return std::ranges::all_of(methods, [&](const StudyMethod& method) {
+    ExtractionOptions options = method;
+    options.order = methods.front().order;
+    return method.method == engine::Method::fixed &&
+           options == static_cast<const ExtractionOptions&>(methods.front());
   });
 }
 
@@ -104,31 +105,31 @@ std::string texture_words(const ExtractionOptions& method) {
     case tv_gabor:
       return tv_gabor_words(method.tv_gabor);
     case gaussian:
-      return fmt::format("image less its Gaussian average (standard deviation {} pixels)",
+      return fmt::format("image minus its Gaussian average (standard deviation {} pixels)",
                          number_text(method.sigma_px));
     case median:
       return fmt::format(
-          "image less its median in a window of {0} x {0} pixels, where they differ by more than "
+          "image minus its median in a window of {0} x {0} pixels, where they differ by more than "
           "{1} grey levels",
           2 * method.radius + 1, number_text(method.threshold_grey));
     case edge:
       return fmt::format("norm of the Sobel gradient divided by {}, at most 127 grey levels",
                          number_text(method.divisor));
     case luminance:
-      return "luminance (grey level less 128)";
+      return "luminance (grey level minus 128)";
   }
   return {};
 }
 
 constexpr const char* kScrambled = "phase-scrambled control (same spectrum, random phases) of ";
 
-/// The method before a control of which it is; null for other methods, and if it is not presented.
+/// The presented method whose control this is; null if there is none.
 const StudyMethod* original_of(const StudyMethod& control, std::span<const StudyMethod> methods) {
   if (control.control == engine::Control::none) return nullptr;
-  ExtractionOptions wanted = control;
-  wanted.control = engine::Control::none;
-  const auto found = std::ranges::find_if(methods, [&wanted](const StudyMethod& one) {
-    return static_cast<const ExtractionOptions&>(one) == wanted;
+  ExtractionOptions original = control;
+  original.control = engine::Control::none;
+  const auto found = std::ranges::find_if(methods, [&original](const StudyMethod& method) {
+    return static_cast<const ExtractionOptions&>(method) == original;
   });
   return found == methods.end() ? nullptr : &*found;
 }
@@ -151,7 +152,7 @@ std::string words_of(const ExtractionOptions& method) {
 SettingFields fields_of_methods(const Study& study) {
   const auto presented =
       std::span(study.methods).first(static_cast<std::size_t>(study.presented_methods()));
-  if (presented.size() > kMethodsByName && differ_in_order(presented)) {
+  if (presented.size() > kMaxListedMethods && differ_only_in_order(presented)) {
     return {{fmt::format("{} orders", presented.size()),
              fmt::format("fractional differential of fixed orders from {} (K = {}, {})",
                          orders_words(presented), presented.front().radius,
@@ -178,17 +179,17 @@ std::string force_words(const RenderingOptions& rendering) {
   if (rendering.model == engine::ModelKind::surface) {
     return "gradient of one potential (model \"surface\"): k e along the normal and −k e α ∇h "
            "along the plane, with k the wall's stiffness, e the depth plus the height α h and h "
-           "the "
-           "cubic spline through the texture" +
+           "the cubic spline through the texture" +
            (rendering.friction > 0.0
                 ? ", with bristle friction of coefficient " + number_text(rendering.friction)
                 : std::string(", without friction")) +
            limit;
   }
   return fmt::format(
-      "wall with force planes (model \"paper\"): c (G − {}) is added to the wall's force, and "
-      "along "
-      "the plane act k_t times the sum of (G_i − G_j) (p_j − p_i) / d² over the {} x {} pixels "
+      "wall with force planes (model \"paper\"): c (G − {}) is added to the wall's force; the "
+      "force "
+      "along the plane is k_t times the sum of (G_i − G_j) (p_j − p_i) / d² over the {} x {} "
+      "pixels "
       "around the stylus, from bright to dark{}{}",
       number_text(rendering.reference_grey), rendering.neighbourhood, rendering.neighbourhood,
       rendering.touchdown_ramp_n > 0.0
@@ -207,7 +208,7 @@ std::string gain_words(const Study& study) {
   std::string words;
   if (study.level) {
     words = fmt::format(
-        "those with which the weakest stimulus stands {} dB above the detection threshold{} (curve "
+        "those that set the weakest stimulus {} dB above the detection threshold{} (curve "
         "\"{}\")",
         number_text(study.level->db), study.device.empty() ? "" : " on \"" + study.device + "\"",
         study.level->curve);
@@ -215,8 +216,8 @@ std::string gain_words(const Study& study) {
     words = "stated: " + gain_list(*rendering.gains, rendering.model);
   } else {
     words = fmt::format(
-        "the largest with which the 99th percentile of the stiffness of all stimuli's texture "
-        "forces stays within {} N/mm",
+        "the largest that keep the 99th percentile of the stiffness of all stimuli's texture "
+        "forces within {} N/mm",
         number_text(rendering.texture_stiffness_n_per_mm));
   }
   static constexpr auto kEqualised = std::to_array<Named<engine::Equalise>>(
@@ -245,7 +246,7 @@ SettingFields fields_of(const ValidityRule& rule) {
                                           number_text(rule.max_median_n) + " N"},
           {"samples at the force limit",
            "less than " + number_text(100 * rule.saturated_share) + " % of those in contact"},
-          {"servo", "no tick missed in contact"}};
+          {"servo", "no missed tick in contact"}};
 }
 
 std::string touch_words(const MinTouch& touch) {
@@ -291,10 +292,10 @@ std::string sight_words(const Study& study) {
   if (study.session.sight == Sight::blindfold) {
     return "nothing (blindfold; names of the textures were learnt by heart)";
   }
-  const Ask ask = ask_of(study);
+  const TrialQuestion question = trial_question_of(study);
   const std::string curtain = "a curtain before hand and device";
-  if (ask.has_pictures()) return curtain + ", and pictures of the textures on a screen";
-  return ask.scales().empty() ? curtain : curtain + ", and one picture with each question";
+  if (question.has_pictures()) return curtain + ", and pictures of the textures on a screen";
+  return question.scales().empty() ? curtain : curtain + ", and one picture with each question";
 }
 
 std::string masking_words(const MaskingPlan& masking) {

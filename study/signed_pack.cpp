@@ -41,9 +41,9 @@ std::vector<fs::path> shown_pictures(const Study& study) {
   const auto add = [&names](const fs::path& name) {
     if (std::ranges::count(names, name) == 0) names.push_back(name);
   };
-  for (const StudyClass& shown : study.classes) add(shown.images.front());
+  for (const StudyClass& study_class : study.classes) add(study_class.images.front());
   if (study.trials.practice > 0) {
-    for (const StudyClass& shown : study.practice.classes) add(shown.images.front());
+    for (const StudyClass& study_class : study.practice.classes) add(study_class.images.front());
   }
   for (const std::string& file : picture_files(study.session)) add(file);
   return names;
@@ -52,7 +52,7 @@ std::vector<fs::path> shown_pictures(const Study& study) {
 std::vector<Digest> picture_digests(const Study& study) {
   const std::vector<fs::path> names = shown_pictures(study);
   std::vector<Digest> digests(names.size());
-  all_in_parallel(names.size(), [&](std::size_t i) {
+  run_all_in_parallel(names.size(), [&](std::size_t i) {
     digests[i] = picture_digest(names[i], study.folder / names[i]);
   });
   std::ranges::sort(digests);
@@ -78,8 +78,7 @@ void require_signed(const engine::Pack& pack, const std::string& study_id, const
   if (manifest.study_id != study_id) {
     refuse_pack(pack.folder(),
                 "is the pack of another study; give a pack and a key or station file that were "
-                "made together "
-                "(--pack, --station-file, --key)");
+                "made together (--pack, --station-file, --key)");
   }
   if (!is_signed(manifest, investigator)) {
     refuse_pack(
@@ -104,12 +103,12 @@ void require_signed(const engine::Pack& pack, const std::string& study_id, const
 
 std::vector<fs::path> require_pictures(const engine::Pack& pack, const Study& study,
                                        std::span<const fs::path> folders) {
-  std::vector<fs::path> absent;
+  std::vector<fs::path> missing;
   for (const fs::path& name : shown_pictures(study)) {
-    const auto folder =
-        std::ranges::find_if(folders, [&](const fs::path& one) { return is_there(one / name); });
+    const auto folder = std::ranges::find_if(
+        folders, [&](const fs::path& candidate) { return path_exists(candidate / name); });
     if (folder == folders.end()) {
-      absent.push_back(name);
+      missing.push_back(name);
     } else if (!std::ranges::binary_search(pack.manifest().pictures,
                                            picture_digest(name, *folder / name))) {
       refuse_pack(
@@ -118,7 +117,7 @@ std::vector<fs::path> require_pictures(const engine::Pack& pack, const Study& st
           "picture, or, only if nobody has taken part yet, run `touchtrial prepare` again");
     }
   }
-  return absent;
+  return missing;
 }
 
 void require_complete_pack(const engine::Pack& pack, const StudyCodes& codes) {
@@ -130,9 +129,9 @@ void require_complete_pack(const engine::Pack& pack, const StudyCodes& codes) {
         "pack; copy the station file again from the investigator's machine");
   }
   const std::array<fs::path, 1> folders = {codes.study.folder};
-  const std::vector<fs::path> absent = require_pictures(pack, codes.study, folders);
-  if (absent.empty()) return;
-  refuse_pack(codes.study.folder / absent.front(),
+  const std::vector<fs::path> missing = require_pictures(pack, codes.study, folders);
+  if (missing.empty()) return;
+  refuse_pack(codes.study.folder / missing.front(),
               "does not exist, but participants must see it; copy it here");
 }
 

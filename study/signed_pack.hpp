@@ -11,7 +11,7 @@
 
 namespace touchtrial::study {
 
-/// The pictures that participants see or, in practice, feel: the first of each class, those of
+/// The pictures that participants see, or feel in practice: the first of each class, those of
 /// practice, and those of the instructions. Paths as in the study file, without duplicates.
 [[nodiscard]] std::vector<std::filesystem::path> shown_pictures(const Study& study);
 
@@ -21,8 +21,8 @@ namespace touchtrial::study {
 [[nodiscard]] std::vector<Digest> picture_digests(const Study& study);
 
 /// Adds the identity of the key's study to a manifest, and signs it.
-/// \param manifest  with its fields
-/// \param pictures  as picture_digests
+/// \param manifest  with its entries
+/// \param pictures  from picture_digests
 void sign(engine::PackManifest& manifest, const StudyKey& key, std::vector<Digest> pictures);
 
 /// Whether the holder of this public key signed the manifest.

@@ -33,18 +33,18 @@ void require_station_name(const std::string& name) {
 
 /// The number of enrolment numbers that each station gets. Each goes to the station with the fewest
 /// numbers, or to the first of several.
-std::vector<int> shares(std::span<const Station> stations, int numbers) {
+std::vector<int> counts_per_station(std::span<const Station> stations, int numbers) {
   using SizeAndIndex = std::pair<int, std::size_t>;  // of a station
   std::priority_queue<SizeAndIndex, std::vector<SizeAndIndex>, std::greater<>> smallest;
   for (std::size_t i = 0; i < stations.size(); ++i) smallest.emplace(stations[i].size(), i);
-  std::vector<int> more(stations.size(), 0);
+  std::vector<int> added(stations.size(), 0);
   for (int i = 0; i < numbers; ++i) {
     const auto [size, index] = smallest.top();
     smallest.pop();
     smallest.emplace(size + 1, index);
-    ++more[index];
+    ++added[index];
   }
-  return more;
+  return added;
 }
 
 SecretKey secret_for(const Station& station, Draws draws) {
@@ -62,17 +62,19 @@ GroupAssignment assign_group(const GroupPlan& plan, const SecretKey& secret, int
   const std::size_t groups = plan.labels.size();
   std::vector<int> members(groups, 0);
   RandomStream random(secret, "groups");
-  for (int left = place;;) {
+  for (int numbers_left = place;;) {
     std::vector<std::size_t> block(groups * (plan.open ? 1 + random.below(2) : 1));
     for (std::size_t i = 0; i < block.size(); ++i) block[i] = i % groups;
     shuffle(std::span<std::size_t>(block), random);
     for (const std::size_t group : block) {
-      if (left-- == 0) return {static_cast<int>(group), members[group]};
+      if (numbers_left-- == 0) return {static_cast<int>(group), members[group]};
       ++members[group];
     }
   }
 }
 
+/// The row of the Williams design at a place. Each block of `rows` places has all rows, in random
+/// order.
 int row_of(const SecretKey& secret, int rows, int place) {
   std::vector<int> order(static_cast<std::size_t>(rows));
   std::iota(order.begin(), order.end(), 0);
@@ -90,12 +92,12 @@ int Station::size() const noexcept {
 }
 
 std::optional<int> Station::place_of(int enrolment) const noexcept {
-  int before = 0;
+  int preceding = 0;
   for (const EnrolmentRange& range : ranges) {
     if (enrolment >= range.first && enrolment <= range.last) {
-      return before + enrolment - range.first;
+      return preceding + enrolment - range.first;
     }
-    before += range.size();
+    preceding += range.size();
   }
   return std::nullopt;
 }
@@ -111,8 +113,7 @@ ScheduleDraw draw_for(const Study& study, const Station& station, int enrolment,
   if (!place) {
     throw UsageError("enrolment number " + std::to_string(enrolment) + " is not one of station " +
                      station.name +
-                     "'s; use one of its own numbers, or hand out more with `touchtrial plan "
-                     "--extend`");
+                     "'s; use one of its numbers, or assign more with `touchtrial plan --extend`");
   }
   if (visit < 1 || visit > study.visits.count) {
     throw UsageError("visit " + std::to_string(visit) +
@@ -120,16 +121,17 @@ ScheduleDraw draw_for(const Study& study, const Station& station, int enrolment,
                      std::to_string(study.visits.count));
   }
   const SecretKey secret = secret_for(station, draws);
-  const GroupAssignment own = assign_group(study.groups, secret, *place);
+  const GroupAssignment assignment = assign_group(study.groups, secret, *place);
   // If every visit presents all methods, each visit has its own trial order.
-  const bool is_again = visit > 1 && study.visits.methods == VisitMethods::all;
-  return {.secret = derive_key(secret, "participant " + std::to_string(enrolment) +
-                                           (is_again ? ", visit " + std::to_string(visit) : "")),
-          .method_order = row_of(study.groups.labels.empty()
-                                     ? secret
-                                     : derive_key(secret, "group " + std::to_string(own.group)),
-                                 method_orders(study), own.place),
-          .visit = visit};
+  const bool is_repeat = visit > 1 && study.visits.methods == VisitMethods::all;
+  return {
+      .secret = derive_key(secret, "participant " + std::to_string(enrolment) +
+                                       (is_repeat ? ", visit " + std::to_string(visit) : "")),
+      .method_order = row_of(study.groups.labels.empty()
+                                 ? secret
+                                 : derive_key(secret, "group " + std::to_string(assignment.group)),
+                             method_orders(study), assignment.place),
+      .visit = visit};
 }
 
 std::optional<int> group_for(const Study& study, const Station& station, int enrolment,
@@ -143,13 +145,14 @@ int order_block_of(const Study& study, std::span<const Station> stations, int en
                    Draws draws) {
   const int rows = method_orders(study);
   const int groups = std::max(1, static_cast<int>(study.groups.labels.size()));
-  int before = 0;  // blocks of earlier stations
+  int preceding = 0;  // blocks of earlier stations
   for (const Station& station : stations) {
     if (const auto place = station.place_of(enrolment)) {
-      const GroupAssignment own = assign_group(study.groups, secret_for(station, draws), *place);
-      return before + own.place / rows * groups + own.group;
+      const GroupAssignment assignment =
+          assign_group(study.groups, secret_for(station, draws), *place);
+      return preceding + assignment.place / rows * groups + assignment.group;
     }
-    before += (station.size() / rows + 1) * groups;
+    preceding += (station.size() / rows + 1) * groups;
   }
   return -1;
 }
@@ -160,10 +163,10 @@ std::vector<Station> stations_named(std::span<const std::string> names) {
                      std::to_string(names.size()));
   }
   std::vector<Station> stations;
-  std::set<std::string> known;
+  std::set<std::string> seen;
   for (const std::string& name : names) {
     require_station_name(name);
-    if (!known.insert(name).second) {
+    if (!seen.insert(name).second) {
       throw UsageError("station " + name + " occurs twice; give every station its own name");
     }
     stations.push_back({.name = name, .ranges = {}});
@@ -171,28 +174,28 @@ std::vector<Station> stations_named(std::span<const std::string> names) {
   return stations;
 }
 
-int enrolments_of(std::span<const Station> stations) noexcept {
+int enrolment_count(std::span<const Station> stations) noexcept {
   int numbers = 0;
   for (const Station& station : stations) numbers += station.size();
   return numbers;
 }
 
-void hand_out_enrolments(std::span<Station> stations, int participants) {
-  const int had = enrolments_of(stations);
-  if (stations.empty() || participants < had || participants > kMaxEnrolments) {
-    throw std::invalid_argument("hand_out_enrolments: no stations, or an impossible number");
+void assign_enrolments(std::span<Station> stations, int participants) {
+  const int assigned = enrolment_count(stations);
+  if (stations.empty() || participants < assigned || participants > kMaxEnrolments) {
+    throw std::invalid_argument("assign_enrolments: no stations, or an impossible number");
   }
-  const std::vector<int> more = shares(stations, participants - had);
-  int next = had + 1;
+  const std::vector<int> added = counts_per_station(stations, participants - assigned);
+  int next_number = assigned + 1;
   for (std::size_t i = 0; i < stations.size(); ++i) {
-    if (more[i] == 0) continue;
+    if (added[i] == 0) continue;
     std::vector<EnrolmentRange>& ranges = stations[i].ranges;
-    if (!ranges.empty() && ranges.back().last == next - 1) {
-      ranges.back().last += more[i];
+    if (!ranges.empty() && ranges.back().last == next_number - 1) {
+      ranges.back().last += added[i];
     } else {
-      ranges.push_back({next, next + more[i] - 1});
+      ranges.push_back({next_number, next_number + added[i] - 1});
     }
-    next += more[i];
+    next_number += added[i];
   }
 }
 
@@ -203,14 +206,14 @@ int next_enrolment_of(const Station& station, const std::set<int>& taken) {
     }
   }
   throw StudyError("all enrolment numbers of station " + station.name +
-                   " are in use; hand out more with `touchtrial plan --extend`, and copy the new "
-                   "station file to "
-                   "the station");
+                   " are in use; assign more with `touchtrial plan --extend`, and copy the new "
+                   "station file to the station");
 }
 
 const Station* station_of(std::span<const Station> stations, int enrolment) noexcept {
-  const auto found = std::ranges::find_if(
-      stations, [enrolment](const Station& own) { return own.place_of(enrolment).has_value(); });
+  const auto found = std::ranges::find_if(stations, [enrolment](const Station& station) {
+    return station.place_of(enrolment).has_value();
+  });
   return found == stations.end() ? nullptr : &*found;
 }
 

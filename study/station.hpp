@@ -31,7 +31,7 @@ inline constexpr const char* kOnlyStation = "main";
 /// One station.
 struct Station {
   std::string name;  ///< unique in its study; has the characters of participant ids
-  std::vector<EnrolmentRange> ranges;  ///< its numbers, in the order in which it got them
+  std::vector<EnrolmentRange> ranges;  ///< its numbers, in the order of assignment
   SecretKey secret{};                  ///< determines its schedules; derived from the study's key
 
   [[nodiscard]] int size() const noexcept;
@@ -40,8 +40,8 @@ struct Station {
   friend bool operator==(const Station&, const Station&) = default;
 };
 
-/// Whose schedule is drawn. Pilots and simulated participants have their own stream, so that no
-/// rehearsal reveals the schedule of a real participant.
+/// The stream from which schedules are drawn. Pilots and simulated participants have their own, so
+/// that no rehearsal reveals the schedule of a real participant.
 enum class Draws { people, rehearsal };
 
 /// The random input of a participant's schedule. The participant's secret is derived from the
@@ -77,14 +77,14 @@ enum class Draws { people, rehearsal };
 ///   [0-9A-Za-z+-_], or a name occurs twice
 [[nodiscard]] std::vector<Station> stations_named(std::span<const std::string> names);
 
-/// The total of enrolment numbers of all stations, which are 1 to this total.
-[[nodiscard]] int enrolments_of(std::span<const Station> stations) noexcept;
+/// The total of enrolment numbers of all stations. The numbers are 1 to this total.
+[[nodiscard]] int enrolment_count(std::span<const Station> stations) noexcept;
 
-/// Hands out the next numbers until all stations together have `participants`. Each station gets
-/// consecutive numbers, such that the totals differ as little as possible.
-/// \param participants  from enrolments_of(stations) to kMaxEnrolments
+/// Assigns the next numbers until all stations together have `participants`. Each station gets
+/// consecutive numbers, such that totals differ as little as possible.
+/// \param participants  from enrolment_count(stations) to kMaxEnrolments
 /// \throws std::invalid_argument if there are no stations or `participants` is out of range
-void hand_out_enrolments(std::span<Station> stations, int participants);
+void assign_enrolments(std::span<Station> stations, int participants);
 
 /// The first of the station's numbers that is not in use.
 /// \throws StudyError with the remedy if all are in use

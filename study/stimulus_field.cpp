@@ -72,14 +72,15 @@ engine::ExtractionOptions method_of(const Study& study, const StimulusIndex& sti
   const auto& method = study.methods[static_cast<std::size_t>(stimulus.method)];
   engine::ExtractionOptions options = method;
   if (options.control == engine::Control::none) return options;
-  const StudyClass& shown = study.class_at(stimulus.class_index);
+  const StudyClass& study_class = study.class_at(stimulus.class_index);
   if (study.is_practice_class(stimulus.class_index)) {
-    options.control_seed = RandomStream(study.seed, "control of practice " + shown.label).bits();
+    options.control_seed =
+        RandomStream(study.seed, "control of practice " + study_class.label).bits();
     return options;
   }
-  const auto& image = shown.images[static_cast<std::size_t>(stimulus.exemplar)];
+  const auto& image = study_class.images[static_cast<std::size_t>(stimulus.exemplar)];
   const Digest identity =
-      FieldHasher().add(shown.label).add(image.string()).add(method.label).finish();
+      FieldHasher().add(study_class.label).add(image.string()).add(method.label).finish();
   options.control_seed = RandomStream(study.seed, "control of " + to_hex(identity)).bits();
   return options;
 }

@@ -1,5 +1,5 @@
-/// \file Makes the field of one stimulus from its image, and checks whether a pack's field was made
-/// from it.
+/// \file Builds the field of a stimulus from its image, and checks a pack's field against the
+/// image.
 #pragma once
 
 #include "core/cipher.hpp"
@@ -12,7 +12,7 @@
 
 namespace touchtrial::study {
 
-/// The method of a stimulus, with a seed of its own for its control. The seed is derived from the
+/// The method of a stimulus, with its own seed for a control. The seed is derived from the
 /// study's seed and from the stimulus's label, image and method. Exemplars and methods therefore
 /// have different phases, and a stimulus keeps its phases when others are added or removed.
 [[nodiscard]] engine::ExtractionOptions method_of(const Study& study,
@@ -32,7 +32,7 @@ namespace touchtrial::study {
 [[nodiscard]] bool is_made_from(const engine::PackEntry& entry, const StudyKey& key,
                                 const GreyImage& image, const StimulusIndex& stimulus);
 
-/// A field, and how the solver ended.
+/// A field, and the solver's state at its end.
 struct BuiltField {
   engine::TextureField field;
   double gap = 0.0;
@@ -50,8 +50,8 @@ struct ExtractedTexture {
 };
 
 /// Makes a stimulus's field.
-/// \param cache  a texture, reused if it is of this method and replaced otherwise; may be empty.
-///   A flat image neither uses nor changes it.
+/// \param cache  the last texture, reused if its method is this one and replaced otherwise; may be
+///   empty. A flat image neither uses nor changes it.
 /// \param keep  whether to keep the texture in `cache` because another stimulus needs it
 [[nodiscard]] BuiltField build_field(const GreyImage& image,
                                      const engine::ExtractionOptions& method,

@@ -23,11 +23,11 @@ constexpr auto kBlindingNames =
 std::string read_plain_name(const JsonValue& place) {
   constexpr std::size_t kMaxLength = 64;
   const std::string& name = place.text();
-  const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
+  const bool has_only_plain_letters = std::all_of(name.begin(), name.end(), [](char c) {
     return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_' ||
            c == '-';
   });
-  if (name.empty() || name.size() > kMaxLength || !plain) {
+  if (name.empty() || name.size() > kMaxLength || !has_only_plain_letters) {
     place.refuse(in_quotes(name) + " must have 1 to 64 of the characters 0-9 A-Z a-z _ -");
   }
   if (is_read_as_missing(name)) {
@@ -42,19 +42,23 @@ namespace {
 
 /// Describes the sections of all protocols; the section of the study's protocol creates its task.
 void describe_tasks(ObjectIo& io, Study& study) {
-  for (const Protocol* one : protocols()) {
-    const auto same = [one](const Protocol* other) { return other->section == one->section; };
-    if (one->section.empty() || *std::ranges::find_if(protocols(), same) != one) continue;
+  for (const Protocol* protocol : protocols()) {
+    const auto has_section = [protocol](const Protocol* other) {
+      return other->section == protocol->section;
+    };
+    const bool is_first = *std::ranges::find_if(protocols(), has_section) == protocol;
+    if (protocol->section.empty() || !is_first) continue;
     std::vector<std::string_view> owners;
     for (const Protocol* other : protocols()) {
-      if (same(other)) owners.push_back(other->name);
+      if (has_section(other)) owners.push_back(other->name);
     }
-    io.only_for("protocol", owners, std::span(&one->section, 1),
-                "belongs to the protocol " + std::string(one->name) +
+    io.only_for("protocol", owners, std::span(&protocol->section, 1),
+                "belongs to the protocol " + std::string(protocol->name) +
                     "; remove it, or choose that protocol");
-    io.member(one->section, {}, false, [&](ValueIo& value) {
+    io.member(protocol->section, {}, false, [&](ValueIo& value) {
       value.custom(
-          one->section_schema == nullptr ? R"({"type": "object"})" : one->section_schema(),
+          protocol->section_schema == nullptr ? R"({"type": "object"})"
+                                              : protocol->section_schema(),
           [&study](const JsonValue& place) { study.task = study.protocol->read(place); },
           [] { return "{}"; });
     });
@@ -83,30 +87,32 @@ void check_size(const JsonValue& place, const Study& study) {
 /// Checks that a practice class shares neither label nor image with the study, nor its image with
 /// another practice class.
 void check_practice_class(const JsonValue& place, const Study& study, std::size_t index) {
-  const StudyClass& learnt = study.practice.classes[index];
-  const std::string at = "/practice/classes/" + std::to_string(index);
-  const auto image = learnt.images.front().lexically_normal();
+  const StudyClass& practice_class = study.practice.classes[index];
+  const std::string pointer = "/practice/classes/" + std::to_string(index);
+  const auto image = practice_class.images.front().lexically_normal();
   const auto has_image = [&](const StudyClass& other) {
     return std::ranges::any_of(other.images,
                                [&](const auto& path) { return path.lexically_normal() == image; });
   };
   const auto has_label = [&](const StudyClass& other) {
-    return skeleton_of(learnt.label) == skeleton_of(other.label);
+    return skeleton_of(practice_class.label) == skeleton_of(other.label);
   };
   if (std::ranges::any_of(study.classes, has_label)) {
-    place.refuse_below(
-        at + "/label",
-        in_quotes(learnt.label) + " is also a class of the study; practise with another texture");
+    place.refuse_below(pointer + "/label",
+                       in_quotes(practice_class.label) +
+                           " is also a class of the study; practise with another texture");
   }
   if (std::ranges::any_of(study.classes, has_image)) {
-    place.refuse_below(at + "/images/0", in_quotes(learnt.images.front().string()) +
-                                             " is also an image of the study; use another image");
+    place.refuse_below(pointer + "/images/0",
+                       in_quotes(practice_class.images.front().string()) +
+                           " is also an image of the study; use another image");
   }
-  const std::span<const StudyClass> before(study.practice.classes.data(), index);
-  if (std::ranges::any_of(before, has_image)) {
-    place.refuse_below(at + "/images/0", in_quotes(learnt.images.front().string()) +
-                                             " is the image of another practice class; use another "
-                                             "image");
+  const std::span<const StudyClass> earlier_classes(study.practice.classes.data(), index);
+  if (std::ranges::any_of(earlier_classes, has_image)) {
+    place.refuse_below(pointer + "/images/0",
+                       in_quotes(practice_class.images.front().string()) +
+                           " is the image of another practice class; use another "
+                           "image");
   }
 }
 
@@ -178,17 +184,17 @@ void describe_plans(ObjectIo& io, Study& study) {
 
 void describe_protocol(ObjectIo& io, Study& study) {
   std::vector<std::string_view> names;
-  for (const Protocol* one : protocols()) names.push_back(one->name);
-  std::size_t at = 0;
+  for (const Protocol* protocol : protocols()) names.push_back(protocol->name);
+  std::size_t index = 0;
   io.member("protocol",
             {.meaning = "`classification`: which texture was presented? `comparison`: the same "
                         "question with several methods. `threshold`: how weak a texture, or how "
                         "small a difference, can still be felt? `rating`: how well does a texture "
                         "fit its picture?",
              .required = true},
-            true, [&](ValueIo& value) { value.choice(at, names); });
+            true, [&](ValueIo& value) { value.choice(index, names); });
   io.rule([&](const JsonValue& /*place*/, const JsonObject& /*object*/) {
-    study.protocol = protocols().at(at);
+    study.protocol = protocols().at(index);
   });
 }
 
@@ -215,7 +221,7 @@ void describe_study(ObjectIo& io, Study& study) {
   describe_plans(io, study);
   io.choice("blinding", study.double_blind, kBlindingNames,
             {"`double`: neither participant nor experimenter knows what is presented; "
-             "`participant`: the experimenter sets something by hand and may know what is "
+             "`participant`: the experimenter adjusts something by hand and may know what is "
              "presented. This is reported, and does not affect what the program shows"});
   io.member(
       "seed",
@@ -227,7 +233,7 @@ void describe_study(ObjectIo& io, Study& study) {
 
 Study read_study(const JsonValue& place) {
   Study study;
-  read_described(place, [&study](ObjectIo& io) { describe_study(io, study); });
+  read_settings(place, [&study](ObjectIo& io) { describe_study(io, study); });
   if (!study.task) study.task = study.protocol->read(std::nullopt);
   check_trials(place, study);
   study.task->check(place, study);
@@ -280,9 +286,9 @@ int Study::scored_trials() const {
 }
 
 int Study::visits_needed() const {
-  const bool first_alone =
+  const bool only_first =
       registration.analysis && registration.analysis->visits == RegisteredVisits::first;
-  return first_alone ? 1 : visits.count;
+  return only_first ? 1 : visits.count;
 }
 
 bool Study::enters_analysis(int visit) const {
@@ -302,7 +308,7 @@ std::string study_schema() {
   defaults.registration.analysis.emplace();
   return annotated_schema(
       "Touchtrial study",
-      "What is presented, how it is rendered, and in which trials. docs/study-file.md explains "
+      "The stimuli, their rendering, and the trials. docs/study-file.md explains "
       "every key.",
       "", [&defaults](ObjectIo& io) { describe_study(io, defaults); });
 }

@@ -39,31 +39,30 @@ enum class Blocks { by_method, mixed };
 /// program.
 enum class OnInterruption { repeat, leave_out, restart_block };
 
-/// The range of stroke speeds that the instructions ask for, mm/s. Source:
-/// docs/running-sessions.md.
+/// The range of stroke speeds in the instructions, mm/s. Source: docs/running-sessions.md.
 inline constexpr double kMinStrokeMmS = 50.0;
 inline constexpr double kMaxStrokeMmS = 150.0;
-/// The range of forces normal to the plane that they ask for, N.
+/// The range of forces normal to the plane in the instructions, N.
 inline constexpr double kMinPressureN = 0.5;
 inline constexpr double kMaxPressureN = 0.8;
 
 /// The conditions for a valid trial, fixed before outcomes are seen. Force, path and contact depend
 /// on the texture, so whether they are within their limits is revealed only after unblinding. The
-/// duration of the exploration and what the hand did by itself (record::HandWindows) are stored
+/// duration of the exploration and the hand's own motion (record::HandWindows) are stored
 /// unencrypted.
 struct ValidityRule {
   double min_exploring_s = 5.0;  ///< from landing to the last sample
   double min_contact_s = 5.0;
-  double min_path_mm = 300.0;     ///< in contact
-  double min_median_n = 0.2;      ///< of the norm of the force in contact
-  double max_median_n = 2.0;      ///< of the same
+  double min_path_mm = 300.0;  ///< in contact
+  double min_median_n = 0.2;   ///< of the norm of the force in contact
+  double max_median_n = 2.0;
   double saturated_share = 0.01;  ///< of the samples in contact; exclusive
 
   friend bool operator==(const ValidityRule&, const ValidityRule&) = default;
 };
 
 /// Minimum contact with the plane before its presentation can be answered. The default is half a
-/// second at the slowest stroke that the instructions ask for. Source: docs/decisions/README.md,
+/// second at the slowest stroke of the instructions. Source: docs/decisions/README.md,
 /// decision 63.
 struct MinTouch {
   double contact_s = 0.5;
@@ -94,7 +93,7 @@ struct TrialOptions {
   MinTouch answer_after{};  ///< zeros: an answer needs no touch
 
   /// The centre of the roved range, dB re the pack's gain.
-  [[nodiscard]] double own_gain_db() const noexcept { return -rove_db / 2.0; }
+  [[nodiscard]] double centre_gain_db() const noexcept { return -rove_db / 2.0; }
 
   friend bool operator==(const TrialOptions&, const TrialOptions&) = default;
 };
@@ -112,13 +111,12 @@ struct TargetLevel {
 struct Study {
   std::string name;
   const Protocol* protocol = nullptr;  ///< never null in a study read from a file
-  std::shared_ptr<const Task> task;    ///< likewise
+  std::shared_ptr<const Task> task;    ///< never null in a study read from a file
   std::vector<StudyClass> classes;     ///< >= 1, labels unique
   std::vector<StudyMethod> methods;    ///< >= 1, labels unique
   engine::RenderingOptions rendering;
-  std::string
-      device;  ///< device model for which the forces are computed, or its file; may be empty
-  std::optional<TargetLevel> level;  ///< determines the gains; nothing: `rendering` does
+  std::string device;                ///< device model that limits forces, or its file; may be empty
+  std::optional<TargetLevel> level;  ///< determines the gains; empty: `rendering` does
   TrialOptions trials;
   PracticePlan practice;
   SessionPlan session;
@@ -145,8 +143,8 @@ struct Study {
   [[nodiscard]] bool is_practice_class(int class_index) const noexcept;
   /// The number of scored presentations of one participant, over all visits.
   [[nodiscard]] int scored_trials() const;
-  /// The number of visits that a participant must complete to count: all, or only the first if the
-  /// registered analysis uses no other.
+  /// The number of visits that a participant must complete to count: all, or one if the registered
+  /// analysis uses only the first.
   [[nodiscard]] int visits_needed() const;
   /// Whether a visit enters the registered analysis.
   [[nodiscard]] bool enters_analysis(int visit) const;

@@ -19,16 +19,15 @@ std::string first_hex(const Digest& digest, std::size_t bytes) {
   return to_hex(ByteView(digest).first(bytes));
 }
 
-/// The code of a stimulus. It depends on no other stimulus, so that it stays the same when others
-/// are added or removed.
+/// The code of a stimulus. It does not change when other stimuli are added or removed.
 std::string code_for(const SecretKey& code_key, const Study& study, const StimulusIndex& stimulus) {
-  const StudyClass& shown = study.class_at(stimulus.class_index);
-  const bool practised = study.is_practice_class(stimulus.class_index);
-  const auto& image = shown.images[static_cast<std::size_t>(stimulus.exemplar)];
+  const StudyClass& study_class = study.class_at(stimulus.class_index);
+  const bool is_practice = study.is_practice_class(stimulus.class_index);
+  const auto& image = study_class.images[static_cast<std::size_t>(stimulus.exemplar)];
   const auto& method = study.methods[static_cast<std::size_t>(stimulus.method)];
   const Digest identity = FieldHasher()
-                              .add(practised ? "touchtrial practice code 1" : "touchtrial code 1")
-                              .add(shown.label)
+                              .add(is_practice ? "touchtrial practice code 1" : "touchtrial code 1")
+                              .add(study_class.label)
                               .add(image.string())
                               .add(method.label)
                               .finish();
@@ -74,24 +73,24 @@ std::string texts_tag(const StudyKey& key) {
   return to_hex(keyed_hash(derive_key(key.master, "texts"), ByteView(hash)));
 }
 
-/// Whether a value with this JSON Schema may be or hold free text.
-bool holds_text(const nlohmann::json& schema) {
+/// Whether a value with this JSON Schema may be or contain free text.
+bool may_contain_text(const nlohmann::json& schema) {
   if (schema.is_object()) {
     const auto type = schema.find("type");
     if (type != schema.end() && *type == "string" && !schema.contains("enum")) return true;
     if (type != schema.end() && *type == "object" && !schema.contains("properties")) return true;
   }
-  return schema.is_structured() && std::ranges::any_of(schema, holds_text);
+  return schema.is_structured() && std::ranges::any_of(schema, may_contain_text);
 }
 
-/// The session's settings without those with free text, which may name textures.
+/// The session's settings without free text, which may name textures.
 nlohmann::json without_texts(const SessionPlan& session) {
-  SessionPlan usual;
-  const auto schema =
-      nlohmann::json::parse(annotated_section({}, [&usual](ObjectIo& io) { describe(io, usual); }));
+  SessionPlan defaults;
+  const auto schema = nlohmann::json::parse(
+      annotated_section({}, [&defaults](ObjectIo& io) { describe(io, defaults); }));
   nlohmann::json settings = to_json(session);
   for (const auto& [key, property] : schema.at("properties").items()) {
-    if (holds_text(property)) settings.erase(key);
+    if (may_contain_text(property)) settings.erase(key);
   }
   return settings;
 }
@@ -145,18 +144,18 @@ const std::string& StudyCodes::code_of(const StimulusIndex& stimulus) const {
 }
 
 ScheduleDraw StudyKey::draw_of(int enrolment, Draws draws, int visit) const {
-  const Station* const own = station_of(stations, enrolment);
-  if (own == nullptr) {
+  const Station* const station = station_of(stations, enrolment);
+  if (station == nullptr) {
     throw UsageError("study " + study.name + ": enrolment number " + std::to_string(enrolment) +
-                     " belongs to no station of this key; hand out more with `touchtrial plan "
+                     " belongs to no station of this key; assign more with `touchtrial plan "
                      "--extend`, or use the key that `plan --extend` wrote last");
   }
-  return draw_for(study, *own, enrolment, draws, visit);
+  return draw_for(study, *station, enrolment, draws, visit);
 }
 
 std::optional<int> StudyKey::group_of(int enrolment, Draws draws) const {
-  const Station* const own = station_of(stations, enrolment);
-  return own == nullptr ? std::nullopt : group_for(study, *own, enrolment, draws);
+  const Station* const station = station_of(stations, enrolment);
+  return station == nullptr ? std::nullopt : group_for(study, *station, enrolment, draws);
 }
 
 BoxKeys StudyKey::box() const {
@@ -183,7 +182,7 @@ StudyKey make_study_key(const Study& study, Entropy& entropy, bool simulated) {
   key.catch_code = catch_code_of(key.master);
   key.investigator_box = key.box().public_half;
   key.investigator_signature = key.signer().public_half();
-  divide(key, {{.name = kOnlyStation, .ranges = {{1, kMaxEnrolments}}}});
+  assign_stations(key, {{.name = kOnlyStation, .ranges = {{1, kMaxEnrolments}}}});
   return rekeyed(key, study);
 }
 
@@ -201,7 +200,7 @@ StudyKey rekeyed(const StudyKey& key, const Study& study) {
   return changed;
 }
 
-void divide(StudyKey& key, std::vector<Station> stations) {
+void assign_stations(StudyKey& key, std::vector<Station> stations) {
   for (Station& station : stations) station.secret = station_secret(key.master, station.name);
   key.stations = std::move(stations);
 }
@@ -212,10 +211,10 @@ StationKey station_key(const StudyKey& key, const std::string& name) {
     throw UsageError("study " + key.study.name + ": has no station " + in_quotes(name) +
                      "; it has " + listed(key.stations, ", ", &Station::name));
   }
-  StationKey own{key, *found};
-  own.certificate =
-      key.signer().sign(station_statement(key.study_id, name, own.signer().public_half()));
-  return own;
+  StationKey station{key, *found};
+  station.certificate =
+      key.signer().sign(station_statement(key.study_id, name, station.signer().public_half()));
+  return station;
 }
 
 std::string blinded_configuration(const StudyKey& key) {
@@ -233,8 +232,9 @@ std::string blinded_configuration(const StudyKey& key) {
                                   {"rendering", to_json(study.rendering)},
                                   {"trials", to_json(study.trials)},
                                   {"blinding", study.double_blind ? "double" : "participant"}};
-  if (const int planes = ask_of(study).planes; planes > 1) configuration["intervals"] = planes;
-  const std::string options = study.task->in_clear();
+  if (const int planes = trial_question_of(study).planes; planes > 1)
+    configuration["intervals"] = planes;
+  const std::string options = study.task->plaintext_settings();
   if (!options.empty()) {
     configuration[std::string(study.protocol->section)] = nlohmann::json::parse(options);
   }
@@ -247,15 +247,15 @@ namespace {
 /// The parts of a study file, by their keys.
 nlohmann::json parts_of(const Study& study) {
   nlohmann::json classes = nlohmann::json::array();
-  for (const StudyClass& shown : study.classes) {
+  for (const StudyClass& study_class : study.classes) {
     nlohmann::json images = nlohmann::json::array();
-    for (const auto& image : shown.images) images.push_back(image.string());
-    classes.push_back({shown.label, images});
+    for (const auto& image : study_class.images) images.push_back(image.string());
+    classes.push_back({study_class.label, images});
   }
   nlohmann::json methods = nlohmann::json::array();
   for (const StudyMethod& method : study.methods) methods.push_back(to_json(method));
   return {{"study", study.name},
-          {"protocol", {study.protocol_name(), study.task->in_clear()}},
+          {"protocol", {study.protocol_name(), study.task->plaintext_settings()}},
           {"classes", classes},
           {"methods", methods},
           {"rendering", to_json(study.rendering)},
@@ -268,14 +268,14 @@ nlohmann::json parts_of(const Study& study) {
           {"groups", to_json(study.groups)},
           {"registration", to_json(study.registration)},
           {"blinding", study.double_blind},
-          {"protocol's own section", study.task->in_clear()},
+          {"protocol's own section", study.task->plaintext_settings()},
           {"seed", study.seed}};
 }
 
 }  // namespace
 
-bool are_same(const Study& one, const Study& other) {
-  return parts_of(one) == parts_of(other);
+bool are_same(const Study& a, const Study& b) {
+  return parts_of(a) == parts_of(b);
 }
 
 std::string mismatch_of(const Study& study, const StudyCodes& key,
@@ -283,18 +283,18 @@ std::string mismatch_of(const Study& study, const StudyCodes& key,
   const std::string what = option == "--key" ? "key" : "file";
   const std::string text = file.string() + ": is not the " + what + " of " + study.source;
   if (study.name != key.study.name) {
-    return one_line(text + ", which is study " + in_quotes(study.name) + ", but of study " +
+    return one_line(text + " (study " + in_quotes(study.name) + "), but of study " +
                     in_quotes(key.study.name) + "; give the right one with " + option);
   }
-  const nlohmann::json ours = parts_of(study);
-  const nlohmann::json theirs = parts_of(key.study);
-  std::vector<std::string> differing;
-  for (const auto& [part, content] : ours.items()) {
-    if (content != theirs.at(part)) differing.push_back(part);
+  const nlohmann::json study_parts = parts_of(study);
+  const nlohmann::json key_parts = parts_of(key.study);
+  std::vector<std::string> differing_parts;
+  for (const auto& [part, content] : study_parts.items()) {
+    if (content != key_parts.at(part)) differing_parts.push_back(part);
   }
-  const std::string parts = differing.empty() ? "seal" : listed(differing, ", ");
+  const std::string parts = differing_parts.empty() ? "seal" : listed(differing_parts, ", ");
   return one_line(text + ", which has changed since it was prepared: its " + parts +
-                  (differing.size() > 1 ? " differ" : " differs") + " from study " +
+                  (differing_parts.size() > 1 ? " differ" : " differs") + " from study " +
                   in_quotes(key.study.name) + " of that " + what +
                   "; undo the change, give the right " + what + " with " + option +
                   ", or, only if nobody has taken part yet, run `touchtrial prepare`");
@@ -306,10 +306,11 @@ Digest study_seal(const StudyKey& key) {
   hasher.add(static_cast<std::int64_t>(key.simulated ? 1 : 0));
   hasher.add(static_cast<std::int64_t>(key.stimuli.size()));
   for (const auto& [code, stimulus] : key.stimuli) {
-    const StudyClass& shown = key.study.classes[static_cast<std::size_t>(stimulus.class_index)];
+    const StudyClass& study_class =
+        key.study.classes[static_cast<std::size_t>(stimulus.class_index)];
     const auto& method = key.study.methods[static_cast<std::size_t>(stimulus.method)];
-    hasher.add(code).add(shown.label);
-    hasher.add(shown.images[static_cast<std::size_t>(stimulus.exemplar)].string());
+    hasher.add(code).add(study_class.label);
+    hasher.add(study_class.images[static_cast<std::size_t>(stimulus.exemplar)].string());
     hasher.add(method.label);
   }
   hasher.add(key.study.task->rule(key.study)).add(static_cast<std::int64_t>(key.study.seed));

@@ -26,7 +26,7 @@ struct StudyCodes {
   std::string study_id;  ///< hexadecimal; derived from the master secret without revealing it
   Study study;           ///< as sealed: labels, image names, methods
   std::vector<KeyedStimulus> stimuli;   ///< every presented class x exemplar x method
-  std::vector<KeyedStimulus> practice;  ///< of practice textures, which no schedule contains
+  std::vector<KeyedStimulus> practice;  ///< practice textures, which no schedule contains
   /// The code of the plane without texture. It looks like the code of a stimulus, but no pack has a
   /// field with this code.
   std::string catch_code;
@@ -34,7 +34,7 @@ struct StudyCodes {
   Digest seal{};                       ///< see study_seal
   PublicKey investigator_box{};        ///< encrypts for the investigator
   PublicKey investigator_signature{};  ///< verifies the investigator's signatures
-  std::filesystem::path pack_folder;   ///< the pack's place when the file was written
+  std::filesystem::path pack_folder;   ///< the pack's folder when the file was written
   bool simulated = false;
 
   /// All fields of the study's pack: `stimuli`, then `practice`.
@@ -51,10 +51,10 @@ struct StudyKey : StudyCodes {
   SecretKey master{};
   std::vector<Station> stations;  ///< with their secrets; never empty
 
-  /// The random input of a participant's schedule, for a number of any station.
+  /// The random input of a participant's schedule, for an enrolment number of any station.
   /// \throws UsageError if no station has the number, or the study has no such visit
   [[nodiscard]] ScheduleDraw draw_of(int enrolment, Draws draws, int visit = 1) const;
-  /// As group_for; empty also if no station has the number.
+  /// The group of an enrolment number, as group_for; also empty if no station has the number.
   [[nodiscard]] std::optional<int> group_of(int enrolment, Draws draws) const;
   [[nodiscard]] BoxKeys box() const;
   [[nodiscard]] Signer signer() const;
@@ -74,7 +74,7 @@ struct StationKey : StudyCodes {
 /// Makes a new key with one station. `entropy` supplies the master secret, for the purpose
 /// "touchtrial study key master"; all other secrets and the codes are derived from it. A code
 /// depends only on the master secret, the class label, the image path as written, the method label,
-/// and whether the stimulus is of practice. A stimulus therefore keeps its code when others are
+/// and whether the stimulus is for practice. A stimulus therefore keeps its code when others are
 /// added or removed, and a practice texture that becomes a class gets a new code.
 /// \throws StudyError if two stimuli get the same code (probability 2^-64 for each pair)
 [[nodiscard]] StudyKey make_study_key(const Study& study, Entropy& entropy, bool simulated);
@@ -88,10 +88,10 @@ struct StationKey : StudyCodes {
 [[nodiscard]] StudyKey rekeyed(const StudyKey& key, const Study& study);
 
 /// Replaces the stations of the key, and derives a secret for each new station.
-void divide(StudyKey& key, std::vector<Station> stations);
+void assign_stations(StudyKey& key, std::vector<Station> stations);
 
 /// The file of one of the key's stations.
-/// \throws UsageError with the names of the existing stations, if there is none of this name
+/// \throws UsageError with the names of the existing stations, if no station has this name
 [[nodiscard]] StationKey station_key(const StudyKey& key, const std::string& name);
 
 /// Writes the file durably with mode 0600. The folders of study and pack are stored relative to the
@@ -116,16 +116,16 @@ void save_station_key(const std::filesystem::path& path, const StationKey& key);
 /// \throws StoreError if the text is not a block, or names a code that the key does not have
 [[nodiscard]] std::vector<Trial> block_from_json(const std::string& text, const StudyCodes& codes);
 
-/// The study as a database stores it unencrypted: with codes instead of labels and image names,
+/// The study as stored unencrypted in a database: with codes instead of labels and image names,
 /// sorted by code, and without the seed. It has the settings of practice and session without their
-/// texts, and a keyed hash of practice, session and registration as a whole. Compact JSON.
+/// texts, and a keyed hash of all of practice, session and registration. Compact JSON.
 [[nodiscard]] std::string blinded_configuration(const StudyKey& key);
 
 /// Whether two studies are equal, regardless of the place and layout of their files.
-[[nodiscard]] bool are_same(const Study& one, const Study& other);
+[[nodiscard]] bool are_same(const Study& a, const Study& b);
 
 /// Explains why a key or station file does not belong to a study, with the remedy. The message
-/// names the study that the file was made for or, if that has the same name, the parts that differ.
+/// names the file's study or, if that has the same name, the parts that differ.
 /// \param study  as read from its file
 /// \param file  the file of `key`
 /// \param option  command-line option that selects the file, for instance "--key"

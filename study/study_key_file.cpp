@@ -1,5 +1,5 @@
-/// \file Key and station files. Their bytes are determined by their content and a checksum over it,
-/// so that a change of any byte is detected.
+/// \file Reads and writes key and station files. Content and checksum determine every byte, so that
+/// any change is detected.
 #include "core/errors.hpp"
 #include "study/key_protection.hpp"
 #include "study/protocol.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Supplies a stored secret, so that make_study_key also rebuilds a stored key.
+/// Supplies a stored secret, from which make_study_key rebuilds the key.
 class StoredEntropy final : public Entropy {
  public:
   explicit StoredEntropy(const SecretKey& master) : master_(master) {}
@@ -26,30 +26,31 @@ class StoredEntropy final : public Entropy {
 };
 
 /// A file format, and the parts of its error messages.
-struct Kind {
-  std::string_view format;
+struct FileFormat {
+  std::string_view name;
   int version;
   std::string_view title;
-  std::string_view remedy;   ///< for another kind of file
-  std::string_view renewal;  ///< for a file of another version
+  std::string_view remedy;          ///< if the file is of another kind
+  std::string_view version_remedy;  ///< if the file has another version
 };
-constexpr Kind kKey{"touchtrial-key", 3, "key", "give the .key file that `prepare` wrote",
-                    "use the version of Touchtrial that wrote it"};
-constexpr Kind kStation{"touchtrial-station", 4, "station file",
-                        "give the .station file that `prepare` or `plan` wrote",
-                        "run `touchtrial prepare` to write it again with the pack, or use the "
-                        "version of Touchtrial that wrote it"};
+constexpr FileFormat kKey{"touchtrial-key", 3, "key", "give the .key file that `prepare` wrote",
+                          "use the version of Touchtrial that wrote it"};
+constexpr FileFormat kStation{
+    "touchtrial-station", 4, "station file",
+    "give the .station file that `prepare` or `plan` wrote",
+    "run `touchtrial prepare` to write it again with the pack, or use the "
+    "version of Touchtrial that wrote it"};
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& what) {
   throw FileError(one_line(path.string() + ": " + what));
 }
 
-[[noreturn]] void refuse_damaged(const std::filesystem::path& path, const Kind& kind) {
-  refuse(path, "the " + std::string(kind.title) +
+[[noreturn]] void refuse_damaged(const std::filesystem::path& path, const FileFormat& format) {
+  refuse(path, "the " + std::string(format.title) +
                    " has been altered or damaged; restore it from a backup");
 }
 
-std::filesystem::path whole(const std::filesystem::path& path) {
+std::filesystem::path canonical_path(const std::filesystem::path& path) {
   std::error_code error;
   const auto absolute = std::filesystem::absolute(path, error);
   const auto canonical = std::filesystem::weakly_canonical(absolute, error);
@@ -57,18 +58,19 @@ std::filesystem::path whole(const std::filesystem::path& path) {
 }
 
 std::filesystem::path folder_of(const std::filesystem::path& file) {
-  return whole(file).parent_path();
+  return canonical_path(file).parent_path();
 }
 
-/// A path relative to the key, so that study and key can be moved together. "" stays "".
+/// Makes a path relative to the key, so that study and key can be moved together. An empty path
+/// stays empty.
 std::string relative_to_key(const std::filesystem::path& target, const std::filesystem::path& key) {
   if (target.empty()) return "";
-  const auto relative = whole(target).lexically_relative(folder_of(key));
-  return relative.empty() ? whole(target).string() : relative.string();
+  const auto relative = canonical_path(target).lexically_relative(folder_of(key));
+  return relative.empty() ? canonical_path(target).string() : relative.string();
 }
 
-std::filesystem::path found_from_key(const std::string& target, const std::filesystem::path& key) {
-  return target.empty() ? std::filesystem::path() : whole(folder_of(key) / target);
+std::filesystem::path path_from_key(const std::string& target, const std::filesystem::path& key) {
+  return target.empty() ? std::filesystem::path() : canonical_path(folder_of(key) / target);
 }
 
 std::string text_of_document(json document) {
@@ -80,11 +82,12 @@ std::string text_of_document(json document) {
 json stimuli_to_json(const std::vector<KeyedStimulus>& stimuli, const Study& study) {
   json list = json::array();
   for (const auto& [code, stimulus] : stimuli) {
-    const StudyClass& shown = study.class_at(stimulus.class_index);
-    list.push_back({{"code", code},
-                    {"label", shown.label},
-                    {"image", shown.images[static_cast<std::size_t>(stimulus.exemplar)].string()},
-                    {"method", study.methods[static_cast<std::size_t>(stimulus.method)].label}});
+    const StudyClass& study_class = study.class_at(stimulus.class_index);
+    list.push_back(
+        {{"code", code},
+         {"label", study_class.label},
+         {"image", study_class.images[static_cast<std::size_t>(stimulus.exemplar)].string()},
+         {"method", study.methods[static_cast<std::size_t>(stimulus.method)].label}});
   }
   return list;
 }
@@ -100,7 +103,7 @@ std::vector<EnrolmentRange> ranges_from(const json& list) {
   for (const json& ends : list) {
     const EnrolmentRange range{ends.at(0).get<int>(), ends.at(1).get<int>()};
     if (range.first < 1 || range.last < range.first || range.last > kMaxEnrolments) {
-      throw FileError("a station's enrolment numbers are impossible");
+      throw FileError("a station's enrolment numbers are out of range");
     }
     ranges.push_back(range);
   }
@@ -108,11 +111,12 @@ std::vector<EnrolmentRange> ranges_from(const json& list) {
 }
 
 /// The members common to both files.
-json common_document(const StudyCodes& codes, const Kind& kind, const std::filesystem::path& path) {
+json common_document(const StudyCodes& codes, const FileFormat& format,
+                     const std::filesystem::path& path) {
   // An empty folder means the working directory; it is written relative to the key as well.
   const auto study_folder = codes.study.folder.empty() ? "." : codes.study.folder;
-  return {{"format", kind.format},
-          {"version", kind.version},
+  return {{"format", format.name},
+          {"version", format.version},
           {"study_id", codes.study_id},
           {"simulated", codes.simulated},
           {"study", codes.study.text},
@@ -122,7 +126,7 @@ json common_document(const StudyCodes& codes, const Kind& kind, const std::files
 }
 
 Study study_from(const json& document, const std::filesystem::path& path) {
-  const auto folder = found_from_key(document.at("study_folder").get<std::string>(), path);
+  const auto folder = path_from_key(document.at("study_folder").get<std::string>(), path);
   return parse_study(document.at("study").get_ref<const std::string&>(), folder,
                      path.string() + ": study");
 }
@@ -153,14 +157,14 @@ StudyKey key_of(const json& document, const std::filesystem::path& path) {
   for (std::size_t i = 0; i < stations.size(); ++i) {
     stations[i].ranges = ranges_from(document["stations"][i].at("enrolments"));
   }
-  StoredEntropy stored(digest_from(document.at("master")));
+  StoredEntropy entropy(digest_from(document.at("master")));
   StudyKey key =
-      make_study_key(study_from(document, path), stored, document.at("simulated").get<bool>());
-  divide(key, std::move(stations));
-  key.pack_folder = found_from_key(document.at("pack_folder").get<std::string>(), path);
-  const bool same = key.study_id == document.at("study_id").get<std::string>() &&
-                    stimuli_to_json(key.stimuli, key.study) == document.at("stimuli");
-  if (!same) refuse_damaged(path, kKey);
+      make_study_key(study_from(document, path), entropy, document.at("simulated").get<bool>());
+  assign_stations(key, std::move(stations));
+  key.pack_folder = path_from_key(document.at("pack_folder").get<std::string>(), path);
+  const bool is_consistent = key.study_id == document.at("study_id").get<std::string>() &&
+                             stimuli_to_json(key.stimuli, key.study) == document.at("stimuli");
+  if (!is_consistent) refuse_damaged(path, kKey);
   return key;
 }
 
@@ -179,14 +183,14 @@ json document_of(const StationKey& key, const std::filesystem::path& path) {
   return document;
 }
 
-/// Reads the codes of a station file, which the station cannot derive.
+/// Reads the codes of a station file.
 /// \return whether the file has exactly the study's fields
 bool read_codes(const json& document, StationKey& key) {
   for (const StimulusIndex& field : presented_fields(key.study)) {
-    const bool practised = key.study.is_practice_class(field.class_index);
-    auto& list = practised ? key.practice : key.stimuli;
-    const json& named = document.at(practised ? "practice" : "stimuli").at(list.size());
-    list.push_back({named.at("code").get<std::string>(), field});
+    const bool is_practice = key.study.is_practice_class(field.class_index);
+    auto& list = is_practice ? key.practice : key.stimuli;
+    const json& stored_stimulus = document.at(is_practice ? "practice" : "stimuli").at(list.size());
+    list.push_back({stored_stimulus.at("code").get<std::string>(), field});
   }
   return stimuli_to_json(key.stimuli, key.study) == document.at("stimuli") &&
          stimuli_to_json(key.practice, key.study) == document.at("practice");
@@ -196,13 +200,13 @@ StationKey station_of_document(const json& document, const std::filesystem::path
   StationKey key;
   key.study = study_from(document, path);
   key.study_id = document.at("study_id").get<std::string>();
-  const bool is_whole = read_codes(document, key);
+  const bool has_all_codes = read_codes(document, key);
   key.catch_code = document.at("catch_code").get<std::string>();
   key.configuration = document.at("configuration").get<std::string>();
   key.seal = digest_from(document.at("seal"));
   key.investigator_box = digest_from(document.at("investigator_box"));
   key.investigator_signature = digest_from(document.at("investigator_signature"));
-  key.pack_folder = found_from_key(document.at("pack_folder").get<std::string>(), path);
+  key.pack_folder = path_from_key(document.at("pack_folder").get<std::string>(), path);
   key.simulated = document.at("simulated").get<bool>();
   const std::vector<std::string> name = {document.at("station").get<std::string>()};
   key.station = stations_named(name).front();
@@ -211,23 +215,25 @@ StationKey station_of_document(const json& document, const std::filesystem::path
   const auto certificate = from_hex(document.at("certificate").get_ref<const std::string&>());
   const Bytes statement =
       station_statement(key.study_id, key.station.name, key.signer().public_half());
-  const bool is_own =
+  const bool is_certified =
       certificate && is_signed_by(key.investigator_signature, statement, *certificate);
-  if (!is_own || !is_whole) refuse_damaged(path, kStation);
+  if (!is_certified || !has_all_codes) refuse_damaged(path, kStation);
   std::ranges::copy(*certificate, key.certificate.begin());
   return key;
 }
 
-void check_format(const json& document, const std::filesystem::path& path, const Kind& kind) {
-  const bool is_known = document.is_object() && document.contains("format") &&
-                        document["format"] == kind.format && document.contains("version");
-  if (!is_known) {
+void check_format(const json& document, const std::filesystem::path& path,
+                  const FileFormat& format) {
+  const bool has_format = document.is_object() && document.contains("format") &&
+                          document["format"] == format.name && document.contains("version");
+  if (!has_format) {
     refuse(path,
-           "is not a Touchtrial " + std::string(kind.title) + "; " + std::string(kind.remedy));
+           "is not a Touchtrial " + std::string(format.title) + "; " + std::string(format.remedy));
   }
-  if (document["version"] != kind.version) {
-    refuse(path, "is a " + std::string(kind.title) + " of version " + document["version"].dump() +
-                     ", not " + std::to_string(kind.version) + "; " + std::string(kind.renewal));
+  if (document["version"] != format.version) {
+    refuse(path, "is a " + std::string(format.title) + " of version " + document["version"].dump() +
+                     ", not " + std::to_string(format.version) + "; " +
+                     std::string(format.version_remedy));
   }
 }
 
@@ -240,28 +246,30 @@ std::string text_of_key(const std::filesystem::path& path, const Key& key) {
   }
 }
 
-/// The document of a file's text, read strictly.
-json whole_document(const std::string& text, const std::filesystem::path& path, const Kind& kind) {
+/// Reads the document of a file's text strictly.
+json read_document(const std::string& text, const std::filesystem::path& path,
+                   const FileFormat& format) {
   json document = json::parse(text, nullptr, false);
   if (document.is_discarded()) {
-    if (text.find(kind.format) != std::string::npos) refuse_damaged(path, kind);
-    check_format(document, path, kind);
+    if (text.find(format.name) != std::string::npos) refuse_damaged(path, format);
+    check_format(document, path, format);
   }
-  check_format(document, path, kind);
-  if (text_of_document(document) != text) refuse_damaged(path, kind);
+  check_format(document, path, format);
+  if (text_of_document(document) != text) refuse_damaged(path, format);
   return document;
 }
 
 /// Parses the text of a key or station file with `make`.
 template <typename Make>
-auto load(const std::filesystem::path& path, const std::string& text, const Kind& kind, Make make) {
-  const json document = whole_document(text, path, kind);
+auto load(const std::filesystem::path& path, const std::string& text, const FileFormat& format,
+          Make make) {
+  const json document = read_document(text, path, format);
   try {
     return make(document, path);
   } catch (const json::exception&) {
-    refuse_damaged(path, kind);
+    refuse_damaged(path, format);
   } catch (const UsageError&) {  // from an invalid station name
-    refuse_damaged(path, kind);
+    refuse_damaged(path, format);
   } catch (const StudyError& error) {
     throw FileError(error.what());
   }
@@ -294,7 +302,7 @@ void protect(const std::filesystem::path& file, const std::optional<std::string>
              const PassphraseCost& cost) {
   const std::string text = read_secret_text(file);
   const bool is_station =
-      text.find("\"format\": \"" + std::string(kStation.format) + "\"") != std::string::npos;
+      text.find("\"format\": \"" + std::string(kStation.name) + "\"") != std::string::npos;
   const Signer signer = is_station ? load(file, text, kStation, station_of_document).signer()
                                    : load(file, text, kKey, key_of).signer();
   write_secret_text(file, text, signer.public_half(), passphrase, cost);

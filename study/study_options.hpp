@@ -9,13 +9,13 @@
 
 namespace touchtrial::study {
 
-/// An object of a study file's "methods".
+/// Parses an object of a study file's "methods".
 /// \param source  name of the text's origin, for errors
 /// \throws StudyError with the place of a key or value that is not accepted
 [[nodiscard]] engine::ExtractionOptions parse_method(std::string_view text,
                                                      const std::string& source);
 
-/// A study file's "rendering"; its device has no effect on forces.
+/// Parses a study file's "rendering"; its device has no effect on forces.
 /// \throws StudyError as parse_method
 [[nodiscard]] engine::RenderingOptions parse_rendering(std::string_view text,
                                                        const std::string& source);

@@ -1,4 +1,4 @@
-/// \file The study file's "rendering".
+/// \file Describes the study file's "rendering".
 #include "engine/perception/vibration_threshold.hpp"
 #include "study/study_options.hpp"
 #include "study/study_sections.hpp"
@@ -21,9 +21,9 @@ constexpr TextRule kCurve{
     .check =
         [](const JsonValue& place) {
           const std::string& curve = place.text();
-          const bool is_name = std::ranges::any_of(engine::kThresholdCurves, [&](auto known) {
-            return curve == engine::name_of(known);
-          });
+          const bool is_name = std::ranges::any_of(
+              engine::kThresholdCurves,
+              [&](auto published_curve) { return curve == engine::name_of(published_curve); });
           if (!is_name && !is_plain(curve, ".db")) {
             place.refuse(
                 "must be israr_2006, tan_1994, or the database of a detection study, NAME.db");
@@ -88,9 +88,9 @@ void describe_gains(ValueIo& io, RenderingSection& rendering) {
   const auto& [options, device, level] = rendering;
   const bool is_surface = options.model == engine::ModelKind::surface;
   const auto gains = [&rendering](ValueIo& value, const auto& describe_them) {
-    engine::Gains of_all = rendering.options.gains.value_or(engine::Gains{});
-    value.part(of_all, describe_them);
-    rendering.options.gains = of_all;
+    engine::Gains explicit_gains = rendering.options.gains.value_or(engine::Gains{});
+    value.part(explicit_gains, describe_them);
+    rendering.options.gains = explicit_gains;
   };
   const ValueIo::Form forms[] = {{[](const JsonValue& place) { return place.is_text(); },
                                   [&](ValueIo& value) {
@@ -99,9 +99,9 @@ void describe_gains(ValueIo& io, RenderingSection& rendering) {
                                   }},
                                  {states_level,
                                   [&](ValueIo& value) {
-                                    TargetLevel wanted;
-                                    value.part(wanted, describe_level);
-                                    rendering.level = wanted;
+                                    TargetLevel target;
+                                    value.part(target, describe_level);
+                                    rendering.level = target;
                                   }},
                                  {[is_surface](const JsonValue& /*place*/) { return is_surface; },
                                   [&](ValueIo& value) { gains(value, describe_surface_gains); }},
@@ -168,16 +168,16 @@ void describe_texture(ObjectIo& io, RenderingSection& rendering) {
               .unit = "pixels",
               .range = "3 to 31, odd"});
   io.rule([&rendering](const JsonValue& place, const JsonObject& /*object*/) {
-    const engine::RenderingOptions& read = rendering.options;
-    if (read.equalise == engine::Equalise::level && !rendering.level) {
+    const engine::RenderingOptions& checked = rendering.options;
+    if (checked.equalise == engine::Equalise::level && !rendering.level) {
       place.refuse_below("/equalise",
                          "is level, but /gains states no level; add level_db and curve there, or "
                          "use rms");
     }
-    if (read.neighbourhood % 2 == 0) {
-      place.refuse_below("/neighbourhood", "is " + std::to_string(read.neighbourhood) +
+    if (checked.neighbourhood % 2 == 0) {
+      place.refuse_below("/neighbourhood", "is " + std::to_string(checked.neighbourhood) +
                                                ", but must be odd; use " +
-                                               std::to_string(read.neighbourhood + 1));
+                                               std::to_string(checked.neighbourhood + 1));
     }
   });
 }
@@ -209,7 +209,7 @@ void describe(ObjectIo& io, RenderingSection& rendering) {
 engine::RenderingOptions parse_rendering(std::string_view text, const std::string& source) {
   const JsonValue place = parse_strict_json(text, source);
   RenderingSection rendering;
-  read_described(place, [&](ObjectIo& io) { describe(io, rendering); });
+  read_settings(place, [&](ObjectIo& io) { describe(io, rendering); });
   if (rendering.level) {
     place.refuse_below("/gains",
                        "states a level, which only a study file may have; give explicit gains");

@@ -1,4 +1,4 @@
-/// \file The study file's "classes", "trials", "practice", "visits" and "groups".
+/// \file Describes the study file's "classes", "trials", "practice", "visits" and "groups".
 #include "study/study_sections.hpp"
 
 #include "core/labels.hpp"
@@ -9,7 +9,7 @@
 namespace touchtrial::study {
 namespace {
 
-constexpr std::size_t kMaxPathBytes = 1024;  // bytes
+constexpr std::size_t kMaxPathBytes = 1024;
 
 constexpr TextRule kLabel{
     .check =
@@ -42,9 +42,9 @@ constexpr TextRule kImage{.check = check_image,
                           .max_length = kMaxPathBytes,
                           .pattern = R"(^[^\u0000-\u001f\u007f-\u009f]+$)"};
 
-void describe_class(ObjectIo& io, StudyClass& one, std::size_t max_images) {
-  io.text("label", one.label, kLabel, {.meaning = "name of the texture", .required = true});
-  io.list("images", one.images, {.min = 1, .max = max_images, .unique = true},
+void describe_class(ObjectIo& io, StudyClass& study_class, std::size_t max_images) {
+  io.text("label", study_class.label, kLabel, {.meaning = "name of the texture", .required = true});
+  io.list("images", study_class.images, {.min = 1, .max = max_images, .unique = true},
           {.meaning = "the exemplars of the class; paths are relative to the study file",
            .required = true},
           [](ValueIo& value, std::filesystem::path& image) {
@@ -52,11 +52,11 @@ void describe_class(ObjectIo& io, StudyClass& one, std::size_t max_images) {
             value.text(path, kImage);
             image = path;
           });
-  io.rule([&one](const JsonValue& place, const JsonObject& /*object*/) {
-    for (auto image = one.images.begin(); image != one.images.end(); ++image) {
-      if (std::find(one.images.begin(), image, *image) == image) continue;
+  io.rule([&images = study_class.images](const JsonValue& place, const JsonObject& /*object*/) {
+    for (auto image = images.begin(); image != images.end(); ++image) {
+      if (std::find(images.begin(), image, *image) == image) continue;
       place.refuse_below(
-          "/images/" + std::to_string(image - one.images.begin()),
+          "/images/" + std::to_string(image - images.begin()),
           in_quotes(image->string()) + " occurs twice; list each image of a class once");
     }
   });
@@ -70,13 +70,13 @@ void describe_validity(ObjectIo& io, ValidityRule& rule) {
   constexpr NumberRange kMedian_n{.low = 0.0, .high = 100.0};
   io.number("exploring_s", rule.min_exploring_s, kTime_s,
             {"minimum exploration, from first contact to the last sample"});
-  io.number("contact_s", rule.min_contact_s, kTime_s, {"contact, at least"});
+  io.number("contact_s", rule.min_contact_s, kTime_s, {"minimum time in contact"});
   io.number("path_mm", rule.min_path_mm, kPath_mm, {"minimum path in contact"});
   io.number("least_median_n", rule.min_median_n, kMedian_n, {"minimum median force in contact"});
   io.number("largest_median_n", rule.max_median_n, kMedian_n, {"maximum median force in contact"});
-  io.number(
-      "saturated_share", rule.saturated_share, {.low = 0.0, .high = 1.0, .open_low = true},
-      {"share of the samples in contact at the force limit, from which on a trial is invalid"});
+  io.number("saturated_share", rule.saturated_share, {.low = 0.0, .high = 1.0, .open_low = true},
+            {"a trial is invalid if at least this share of its samples in contact is at the force "
+             "limit"});
 }
 
 void describe_min_touch(ObjectIo& io, MinTouch& touch) {
@@ -86,7 +86,7 @@ void describe_min_touch(ObjectIo& io, MinTouch& touch) {
             {"minimum path along it; 0 here and in `contact_s`: no touch needed"});
 }
 
-/// Describes how presentations are ordered.
+/// Describes the order of presentations.
 void describe_order(ObjectIo& io, TrialOptions& trials) {
   io.integer("catch", trials.catch_trials, 0, 1000,
              {"unscored presentations of a plane without texture, at random places among the "
@@ -109,7 +109,7 @@ void describe_order(ObjectIo& io, TrialOptions& trials) {
              .if_changed = true});
 }
 
-/// Describes what follows an interruption, and how long a session can be resumed.
+/// Describes the handling of interruptions.
 void describe_resumption(ObjectIo& io, TrialOptions& trials) {
   constexpr double kYear_h = 8760.0;
   io.choice(
@@ -127,14 +127,14 @@ void describe_resumption(ObjectIo& io, TrialOptions& trials) {
 }  // namespace
 
 nlohmann::json written_section(const Description& section, const Description& defaults) {
-  return nlohmann::json::parse(written_as_described(section, defaults));
+  return nlohmann::json::parse(described_json(section, defaults));
 }
 
 void refuse_same_label(const JsonValue& place, const std::string& pointer, const std::string& label,
-                       const std::string& other, const std::string& of) {
+                       const std::string& other, const std::string& category) {
   if (label == other) {
-    place.refuse_below(
-        pointer, in_quotes(label) + " is the label of another " + of + "; labels must be unique");
+    place.refuse_below(pointer, in_quotes(label) + " is the label of another " + category +
+                                    "; labels must be unique");
   }
   if (skeleton_of(label) == skeleton_of(other)) {
     place.refuse_below(pointer, in_quotes(label) + " and " + in_quotes(other) +
@@ -145,8 +145,8 @@ void refuse_same_label(const JsonValue& place, const std::string& pointer, const
 void describe_classes(ObjectIo& io, std::vector<StudyClass>& classes, int min_classes,
                       std::size_t max_images, const KeyInfo& info) {
   io.list("classes", classes, {.min = static_cast<std::size_t>(min_classes), .max = kMaxClasses},
-          info, [max_images](ValueIo& value, StudyClass& one) {
-            value.object([&](ObjectIo& keys) { describe_class(keys, one, max_images); });
+          info, [max_images](ValueIo& value, StudyClass& study_class) {
+            value.object([&](ObjectIo& keys) { describe_class(keys, study_class, max_images); });
           });
   io.rule([&classes](const JsonValue& place, const JsonObject& /*object*/) {
     for (std::size_t i = 1; i < classes.size(); ++i) {
@@ -169,7 +169,7 @@ void describe(ObjectIo& io, TrialOptions& trials) {
             {"`fade`: the force fades and the participant still answers; `no-response`: the trial "
              "ends without an answer and counts as wrong"});
   io.integer("practice", trials.practice, 0, 100,
-             {"presentations in a practice round; needs the section `practice`"});
+             {"presentations in a practice round; requires the section `practice`"});
   io.integer("break_every", trials.break_every, 0, 10'000,
              {.meaning = "trials between breaks; 0: no breaks", .unit = "trials"});
   io.number("break_after_min", trials.break_after_min, {0.0, 240.0},

@@ -137,7 +137,7 @@ inline constexpr std::size_t kMaxMethods = 8;
 inline constexpr int kMaxStimuli = 10'000;
 inline constexpr int kMaxScoredTrials = 10'000;
 
-/// Reads a name that is safe in file names, tables and BIDS labels: 1 to 64 of 0-9 A-Z a-z _ -, but
+/// Reads a name that is safe in file names, tables and BIDS labels: 1 to 64 of 0-9 A-Z a-z _ -, and
 /// not a word that other programs read as a missing value.
 /// \throws StudyError if the text is not such a name
 [[nodiscard]] std::string read_plain_name(const JsonValue& place);
@@ -149,10 +149,10 @@ inline constexpr TextRule kPlainName{
 
 /// Refuses a label that equals or looks like another one (skeleton_of).
 /// \param pointer  JSON pointer to the label
-/// \param of  the labelled kind of thing, for instance "class"
+/// \param category  what the labels name, for instance "class"
 /// \throws StudyError with the place
 void refuse_same_label(const JsonValue& place, const std::string& pointer, const std::string& label,
-                       const std::string& other, const std::string& of);
+                       const std::string& other, const std::string& category);
 
 /// The content of "rendering".
 struct RenderingSection {
@@ -171,17 +171,17 @@ void describe(ObjectIo& io, PracticePlan& practice);
 void describe(ObjectIo& io, SessionPlan& session);
 void describe(ObjectIo& io, VisitPlan& visits);
 void describe(ObjectIo& io, GroupPlan& groups);
-/// \param default_test  of a difference in this study
+/// \param default_test  default_test_of the study
 void describe(ObjectIo& io, Registration& registration, RegisteredTest default_test);
 /// Checks that the registered analysis is possible for this study.
-/// \param file  the whole study file
+/// \param file  the study file
 void check_registration(const JsonValue& file, const Study& study);
 
-/// The sections in the form of the study file, with every key explicit except the following. A
+/// Writes a section in the form of the study file. It has every key, with these exceptions: a
 /// method has only the keys that belong to it, "control" if it has one, and "label" if it is not
-/// the default. Keys that are younger than sealed studies appear only if they differ from their
-/// defaults (KeyInfo::if_changed), and a registration has the keys of its analysis only if it has
-/// one, so that older studies keep their seals. Equal options give equal JSON.
+/// the default. So that older studies keep their seals, keys that were added later appear only if
+/// they differ from their defaults (KeyInfo::if_changed), and a registration has the keys of an
+/// analysis only if it has one. Equal options give equal JSON.
 [[nodiscard]] nlohmann::json written_section(const Description& section,
                                              const Description& defaults);
 template <typename Section>

@@ -1,4 +1,4 @@
-/// \file The study file's "session": its texts, its questions, and its other settings.
+/// \file Describes the study file's "session": its texts, its questions, and its other settings.
 #include "core/labels.hpp"
 #include "study/languages.hpp"
 #include "study/study_sections.hpp"
@@ -8,9 +8,9 @@
 namespace touchtrial::study {
 namespace {
 
-constexpr std::size_t kMaxQuestionBytes = 500;  // bytes
-constexpr std::size_t kMaxPageBytes = 4000;     // bytes
-constexpr std::size_t kMaxNameBytes = 64;       // bytes
+constexpr std::size_t kMaxQuestionBytes = 500;
+constexpr std::size_t kMaxPageBytes = 4000;
+constexpr std::size_t kMaxNameBytes = 64;
 
 void check_length(const JsonValue& place, const std::string& text, std::size_t max_bytes) {
   if (text.size() <= max_bytes) return;
@@ -34,7 +34,7 @@ void describe_bounds(ObjectIo& io, Question& question) {
   constexpr auto kOwner = std::to_array<std::string_view>({"number"});
   io.only_for("kind", kOwner, kKeys, "belongs to a question of the kind number; remove it");
   io.number("min", question.min, kAny, {"minimum, shown on the screen; only for `number`"});
-  io.number("max", question.max, kAny, {"maximum, likewise"});
+  io.number("max", question.max, kAny, {"maximum, shown on the screen; only for `number`"});
   io.rule([&question](const JsonValue& place, const JsonObject& /*object*/) {
     if (!question.min || !question.max || *question.min <= *question.max) return;
     place.refuse_below("/max", "is " + number_text(*question.max) + ", less than min, " +
@@ -86,16 +86,16 @@ void describe_instructions(ObjectIo& io, SessionPlan& session) {
   });
 }
 
-void describe_own_texts(ObjectIo& io, SessionPlan& session) {
+void describe_replaced_texts(ObjectIo& io, SessionPlan& session) {
   describe_by_language(io, session.texts, [](ValueIo& value, Texts& texts) {
     value.custom(R"({"type": "object"})",
                  [&texts](const JsonValue& place) { texts = read_texts(place); },
                  [&texts] { return nlohmann::json(texts).dump(); });
   });
-  std::erase_if(session.texts, [](const auto& own) { return own.second.empty(); });
+  std::erase_if(session.texts, [](const auto& entry) { return entry.second.empty(); });
 }
 
-/// Describes what the participant reads.
+/// Describes the texts that the participant reads.
 void describe_texts(ObjectIo& io, SessionPlan& session) {
   const std::vector<std::string_view>& codes = language_codes();
   auto language =
@@ -117,7 +117,7 @@ void describe_texts(ObjectIo& io, SessionPlan& session) {
                       "screens that replace those of the program",
            .if_changed = true,
            .range = "by language, section and key"},
-          describe_own_texts);
+          describe_replaced_texts);
   io.number("text_scale", session.text_scale, {.low = 1.0, .high = kMaxTextScale},
             {.meaning = "size of the letters on the participant's screens", .if_changed = true});
   io.boolean(
@@ -162,14 +162,12 @@ void describe_closing(ObjectIo& io, SessionPlan& session) {
   io.rule([&session](const JsonValue& place, const JsonObject& /*object*/) {
     const std::vector<Question>& questions = session.closing_questions;
     for (std::size_t i = 0; i < questions.size(); ++i) {
-      const auto here = questions.begin() + static_cast<std::ptrdiff_t>(i);
-      if (std::find_if(questions.begin(), here,
-                       [&](const Question& other) { return other.id == here->id; }) == here) {
+      const auto current = questions.begin() + static_cast<std::ptrdiff_t>(i);
+      if (std::ranges::find(questions.begin(), current, current->id, &Question::id) == current)
         continue;
-      }
       place.refuse_below(
           "/closing_questions/" + std::to_string(i) + "/id",
-          in_quotes(here->id) + " is the id of another question; ids must be unique");
+          in_quotes(current->id) + " is the id of another question; ids must be unique");
     }
   });
   io.boolean("closing", session.closing,
@@ -203,9 +201,9 @@ std::string read_paragraphs(const JsonValue& place, std::size_t max_bytes) {
 std::string_view words_for_language(std::string_view code) {
   static const std::map<std::string_view, std::string> kWords = [] {
     std::map<std::string_view, std::string> words;
-    for (const std::string_view one : language_codes()) {
-      const Language& language = language_of(one);
-      words[one] = language.name + (language.draft ? ", a draft" : "");
+    for (const std::string_view listed_code : language_codes()) {
+      const Language& language = language_of(listed_code);
+      words[listed_code] = language.name + (language.draft ? ", a draft" : "");
     }
     return words;
   }();

@@ -20,21 +20,21 @@ namespace touchtrial::choices {
 namespace {
 
 using analysis::AnsweredBlock;
+using analysis::BlockRedraw;
 using analysis::ChanceTest;
+using analysis::ClassRedraw;
 using analysis::FeltBlock;
 using analysis::FeltTrial;
-using analysis::KnownMatches;
+using analysis::MatchCache;
 using analysis::OrderEffects;
 using analysis::OrderRule;
 using analysis::Prevalence;
-using analysis::RedrawnBlock;
-using analysis::RedrawnClasses;
 
 constexpr int kMinDeals = 999;
 constexpr int kMaxBlockDeals = 1'000'000;  ///< takes at most one second
 
-/// The place of each scored trial of a method within its block's schedule. A repeated trial keeps
-/// it.
+/// The place of each scored trial of a method within its block's schedule. A repetition keeps the
+/// place.
 std::map<const TrialOutcome*, int> scheduled_places(const Outcomes& outcomes, int method) {
   std::map<std::pair<int, int>, std::vector<const TrialOutcome*>> blocks;
   for (const TrialOutcome& trial : outcomes.trials) {
@@ -45,7 +45,8 @@ std::map<const TrialOutcome*, int> scheduled_places(const Outcomes& outcomes, in
   std::map<const TrialOutcome*, int> places;
   for (auto& [id, trials] : blocks) {
     int place = 0;
-    std::ranges::stable_sort(trials, {}, [](const TrialOutcome* one) { return one->row.trial; });
+    std::ranges::stable_sort(trials, {},
+                             [](const TrialOutcome* trial) { return trial->row.trial; });
     for (const TrialOutcome* trial : trials) places.emplace(trial, place++);
   }
   return places;
@@ -53,7 +54,7 @@ std::map<const TrialOutcome*, int> scheduled_places(const Outcomes& outcomes, in
 
 /// Counted trials by block, each with its place among the scored presentations of the method.
 struct PlacedBlocks {
-  std::vector<int> people;  ///< of each block: see FirstSessions
+  std::vector<int> people;  ///< of each block, by FirstSessions
   std::vector<AnsweredBlock> answers;
   std::vector<std::vector<int>> places;
 };
@@ -67,11 +68,11 @@ PlacedBlocks blocks_of(const Outcomes& outcomes, int method) {
   for (const TrialOutcome& trial : outcomes.trials) {
     const auto place = places.find(&trial);
     if (place == places.end() || !trial.counted) continue;
-    auto& [answers, own] =
-        blocks[{people.of(trial.row.session), trial.row.session, trial.row.block}];
+    auto& [answers, positions] =
+        blocks[{people.first_of(trial.row.session), trial.row.session, trial.row.block}];
     answers.presented.push_back(trial.stimulus.class_index);
     answers.answered.push_back(trial.response);
-    own.push_back(place->second);
+    positions.push_back(place->second);
   }
   PlacedBlocks all;
   for (auto& [id, block] : blocks) {
@@ -82,63 +83,62 @@ PlacedBlocks blocks_of(const Outcomes& outcomes, int method) {
   return all;
 }
 
-/// The number of draws. Large studies need fewer, because the sum over many blocks varies little.
-int deals_for(std::size_t blocks, int most_deals) {
+/// Large studies need fewer draws, because the sum over many blocks varies little.
+int deals_for(std::size_t blocks, int max_deals) {
   const auto affordable = kMaxBlockDeals / static_cast<int>(std::max<std::size_t>(1, blocks));
-  return std::clamp(affordable, std::min(kMinDeals, most_deals), most_deals);
+  return std::clamp(affordable, std::min(kMinDeals, max_deals), max_deals);
 }
 
-/// The most draws that are affordable; level * (draws + 1) is whole.
-/// \param choices  descending
-/// \param most  of draws times things to draw for
-int draws_for(std::size_t things, std::initializer_list<int> choices, std::size_t most) {
+/// \param choices  numbers of draws for which level * (draws + 1) is an integer, descending
+/// \param budget  the maximum of draws * items
+int affordable_draws(std::size_t items, std::initializer_list<int> choices, std::size_t budget) {
   for (const int draws : choices) {
-    if (things * static_cast<std::size_t>(draws) <= most) return draws;
+    if (items * static_cast<std::size_t>(draws) <= budget) return draws;
   }
   return 99;
 }
 
-/// Draws of orders by the study's schedules.
-/// \param places  of each block \return nothing if the rule allows any order, or a block has places
-///   that are not in the schedules
+/// \param places  of each block
+/// \return nothing if the rule allows any order, or a block has places beyond the schedules
 std::optional<OrderDraws> schedule_draws(const study::Study& study, int method,
                                          std::span<const std::vector<int>> places, int deals,
                                          std::string_view purpose) {
-  if (dealt_order(study) != OrderRule::redrawn || places.empty()) return std::nullopt;
+  if (order_rule_of(study) != OrderRule::redrawn || places.empty()) return std::nullopt;
   OrderDraws draws(study, method, places.size(), deals, purpose);
-  const bool fit = std::ranges::all_of(places, [&](const std::vector<int>& block) {
+  const bool all_fit = std::ranges::all_of(places, [&](const std::vector<int>& block) {
     return static_cast<std::size_t>(std::ranges::max(block)) < draws.length();
   });
-  return fit ? std::optional(std::move(draws)) : std::nullopt;
+  return all_fit ? std::optional(std::move(draws)) : std::nullopt;
 }
 
-/// The chance tests of some of a study's blocks, over the same drawn orders.
+/// The chance tests of ranges of a study's blocks, over the same drawn orders.
 class BlockTests {
  public:
-  /// \param placed,known  must outlive this; `known` may be null
-  BlockTests(const Outcomes& outcomes, int method, const PlacedBlocks& placed, int deals,
-             KnownMatches* known)
+  /// \param placed_blocks,cache  must outlive this; `cache` may be null
+  BlockTests(const Outcomes& outcomes, int method, const PlacedBlocks& placed_blocks, int deals,
+             MatchCache* cache)
       : classes_(static_cast<int>(outcomes.classes.size())),
-        placed_(placed),
-        order_(dealt_order(outcomes.design)),
+        placed_(placed_blocks),
+        order_(order_rule_of(outcomes.design)),
         deals_(deals),
-        known_(known),
-        draws_(schedule_draws(outcomes.design, method, placed.places, deals, "chance test")) {
-    // Falls back to any order.
+        cache_(cache),
+        draws_(
+            schedule_draws(outcomes.design, method, placed_blocks.places, deals, "chance test")) {
+    // Without draws from schedules, any order is allowed.
     if (order_ == OrderRule::redrawn && !draws_) order_ = OrderRule::permuted;
   }
 
-  /// \param first,last  blocks
+  /// \param begin,end  the range of blocks
   /// \return nothing without blocks
-  [[nodiscard]] std::optional<ChanceTest> of(std::size_t first, std::size_t last) {
-    const std::span blocks = std::span(placed_.answers).subspan(first, last - first);
-    RedrawnBlock redraw;
+  [[nodiscard]] std::optional<ChanceTest> test(std::size_t begin, std::size_t end) {
+    const std::span blocks = std::span(placed_.answers).subspan(begin, end - begin);
+    BlockRedraw redraw;
     if (draws_) {
-      redraw = [this, first](std::size_t block, int deal) {
-        return draws_->drawn(first + block, deal, placed_.places[first + block]);
+      redraw = [this, begin](std::size_t block, int deal) {
+        return draws_->classes_at(begin + block, deal, placed_.places[begin + block]);
       };
     }
-    return chance_test(classes_, blocks, order_, redraw, deals_, known_);
+    return chance_test(classes_, blocks, order_, redraw, deals_, cache_);
   }
 
  private:
@@ -146,7 +146,7 @@ class BlockTests {
   const PlacedBlocks& placed_;
   OrderRule order_;
   int deals_;
-  KnownMatches* known_;
+  MatchCache* cache_;
   std::optional<OrderDraws> draws_;
 };
 
@@ -155,37 +155,36 @@ constexpr std::size_t kMaxMovedTrials = 5'000'000;  ///< takes about a tenth of 
 /// A block as it was felt.
 struct OrderedBlock {
   FeltBlock felt;
-  std::vector<int> places;  ///< of its moving trials, in the schedule's order of the method
+  std::vector<int> places;  ///< of its moving trials among the method's scheduled trials
 };
 
-FeltTrial felt_trial(const TrialOutcome& trial, const TrialOutcome* before) {
+FeltTrial felt_trial(const TrialOutcome& trial, const TrialOutcome* previous) {
   FeltTrial felt;
   if (trial.role != study::Role::catch_trial) {
     felt.presented = trial.stimulus.class_index;
     felt.answered = trial.response;
   }
-  felt.follows = before != nullptr && before->row.session == trial.row.session &&
-                 before->row.block == trial.row.block;
+  felt.follows = previous != nullptr && previous->row.session == trial.row.session &&
+                 previous->row.block == trial.row.block;
   felt.moves = false;
   return felt;
 }
 
-/// By session and block.
-using OwnBlocks = std::map<std::pair<int, int>, OrderedBlock>;
+using BlocksBySession = std::map<std::pair<int, int>, OrderedBlock>;  ///< by session and block
 
 /// The blocks of every participant that have a moving trial.
-std::map<int, OwnBlocks> ordered_blocks(const Outcomes& outcomes, int method) {
+std::map<int, BlocksBySession> ordered_blocks(const Outcomes& outcomes, int method) {
   const std::map<const TrialOutcome*, int> places = scheduled_places(outcomes, method);
-  const FirstSessions whose(outcomes);
-  std::map<int, OwnBlocks> people;
-  const TrialOutcome* before = nullptr;
+  const FirstSessions first_sessions(outcomes);
+  std::map<int, BlocksBySession> people;
+  const TrialOutcome* previous = nullptr;
   int place = 0;
-  for (const TrialOutcome* trial : as_felt(outcomes)) {
-    if (before == nullptr || before->row.session != trial->row.session) place = 0;
+  for (const TrialOutcome* trial : trials_in_felt_order(outcomes)) {
+    if (previous == nullptr || previous->row.session != trial->row.session) place = 0;
     OrderedBlock& block =
-        people[whose.of(trial->row.session)][{trial->row.session, trial->row.block}];
-    FeltTrial& felt = block.felt.emplace_back(felt_trial(*trial, before));
-    before = trial;
+        people[first_sessions.first_of(trial->row.session)][{trial->row.session, trial->row.block}];
+    FeltTrial& felt = block.felt.emplace_back(felt_trial(*trial, previous));
+    previous = trial;
     if (!trial->scored || trial->stimulus.method != method) continue;
     ++place;
     if (!trial->counted) continue;
@@ -194,20 +193,20 @@ std::map<int, OwnBlocks> ordered_blocks(const Outcomes& outcomes, int method) {
     block.places.push_back(places.at(trial));
   }
   for (auto& [person, blocks] : people) {
-    std::erase_if(blocks, [](const auto& one) { return one.second.places.empty(); });
+    std::erase_if(blocks, [](const auto& entry) { return entry.second.places.empty(); });
   }
   return people;
 }
 
 constexpr int kOrders = 300;
-constexpr int kRenamings = 120;
+constexpr int kPermutations = 120;
 
 /// The classes of the scored presentations of one method, in the order of a schedule.
-std::vector<int> order_in(const study::Schedule& schedule, int method) {
+std::vector<int> scored_order_of(const study::Schedule& schedule, int method) {
   std::vector<int> order;
-  for (const study::Trial& shown : schedule.trials) {
-    if (shown.role == study::Role::scored && shown.field().method == method) {
-      order.push_back(shown.field().class_index);
+  for (const study::Trial& trial : schedule.trials) {
+    if (trial.role == study::Role::scored && trial.field().method == method) {
+      order.push_back(trial.field().class_index);
     }
   }
   return order;
@@ -215,63 +214,65 @@ std::vector<int> order_in(const study::Schedule& schedule, int method) {
 
 }  // namespace
 
-std::optional<ChanceTest> chance_of(const Outcomes& outcomes, int method, int most_deals,
-                                    KnownMatches* known) {
-  const PlacedBlocks placed = blocks_of(outcomes, method);
-  const std::size_t blocks = placed.answers.size();
-  const bool redrawn = dealt_order(outcomes.design) == OrderRule::redrawn;
-  const int deals = redrawn ? deals_for(blocks, most_deals) : kMaxChanceDeals;
-  return BlockTests(outcomes, method, placed, deals, known).of(0, blocks);
+std::optional<ChanceTest> chance_test_of(const Outcomes& outcomes, int method, int max_deals,
+                                         MatchCache* cache) {
+  const PlacedBlocks placed_blocks = blocks_of(outcomes, method);
+  const std::size_t blocks = placed_blocks.answers.size();
+  const bool is_redrawn = order_rule_of(outcomes.design) == OrderRule::redrawn;
+  const int deals = is_redrawn ? deals_for(blocks, max_deals) : kMaxChanceDeals;
+  return BlockTests(outcomes, method, placed_blocks, deals, cache).test(0, blocks);
 }
 
-std::optional<Prevalence> own_prevalence(const Outcomes& outcomes, int method,
-                                         KnownMatches* known) {
-  const PlacedBlocks placed = blocks_of(outcomes, method);
-  const std::vector<int>& people = placed.people;
-  const int deals = draws_for(people.size(), {999, 199}, kMaxBlockDeals);
-  BlockTests tests(outcomes, method, placed, deals, known);
+std::optional<Prevalence> prevalence_above_chance(const Outcomes& outcomes, int method,
+                                                  MatchCache* cache) {
+  const PlacedBlocks placed_blocks = blocks_of(outcomes, method);
+  const std::vector<int>& people = placed_blocks.people;
+  const int deals = affordable_draws(people.size(), {999, 199}, kMaxBlockDeals);
+  BlockTests tests(outcomes, method, placed_blocks, deals, cache);
   Proportion passed;
   double level = 0.0;
-  for (std::size_t first = 0; first < people.size();) {
-    std::size_t last = first + 1;
-    while (last < people.size() && people[last] == people[first]) ++last;
-    if (const auto test = tests.of(first, last)) {
+  for (std::size_t begin = 0; begin < people.size();) {
+    std::size_t end = begin + 1;
+    while (end < people.size() && people[end] == people[begin]) ++end;
+    if (const auto test = tests.test(begin, end)) {
       passed.add(test->p <= analysis::kSignificanceLevel);
       level += test->attainable;
     }
-    first = last;
+    begin = end;
   }
   if (passed.n == 0) return std::nullopt;
   return prevalence_of(passed, level / passed.n);
 }
 
-std::optional<OrderEffects> order_of(const Outcomes& outcomes, int method) {
+std::optional<OrderEffects> order_effects_of(const Outcomes& outcomes, int method) {
   std::vector<std::vector<FeltBlock>> participants;
   std::vector<std::vector<int>> places;  // of each block
   std::size_t trials = 0;
   for (auto& [person, blocks] : ordered_blocks(outcomes, method)) {
     if (blocks.empty()) continue;
-    std::vector<FeltBlock>& own = participants.emplace_back();
+    std::vector<FeltBlock>& felt_blocks = participants.emplace_back();
     for (auto& [number, block] : blocks) {
       trials += block.places.size();
-      own.push_back(block.felt);
+      felt_blocks.push_back(block.felt);
       places.push_back(block.places);
     }
   }
-  const int draws = draws_for(trials, {1999, 999, 199}, kMaxMovedTrials);
+  const int draws = affordable_draws(trials, {1999, 999, 199}, kMaxMovedTrials);
   const auto orders = schedule_draws(outcomes.design, method, places, draws, "order effects");
-  RedrawnClasses redraw;  // if empty, any order is allowed
+  ClassRedraw redraw;  // if empty, any order is allowed
   if (orders) {
-    redraw = [&](std::size_t block, int deal) { return orders->drawn(block, deal, places[block]); };
+    redraw = [&](std::size_t block, int deal) {
+      return orders->classes_at(block, deal, places[block]);
+    };
   }
   return order_effects(participants, redraw, draws, static_cast<std::uint64_t>(method));
 }
 
-OrderRule dealt_order(const study::Study& study) {
+OrderRule order_rule_of(const study::Study& study) {
   const study::TrialOptions& trials = study.trials;
-  const bool limited = trials.max_run > 0;
-  if (!limited && trials.order == study::TrialOrder::shuffled) return OrderRule::permuted;
-  if (!limited && trials.order == study::TrialOrder::uniform) return OrderRule::independent;
+  const bool has_run_limit = trials.max_run > 0;
+  if (!has_run_limit && trials.order == study::TrialOrder::shuffled) return OrderRule::permuted;
+  if (!has_run_limit && trials.order == study::TrialOrder::uniform) return OrderRule::independent;
   return OrderRule::redrawn;
 }
 
@@ -282,23 +283,23 @@ OrderDraws::OrderDraws(const study::Study& study, int method, std::size_t blocks
   SeededEntropy entropy(study.seed);
   for (int i = 1; i <= kOrders; ++i) {
     const study::ScheduleDraw draw{entropy.secret("chance test: order " + std::to_string(i)), i};
-    orders_.push_back(order_in(study::make_schedule(study, draw), method));
+    orders_.push_back(scored_order_of(study::make_schedule(study, draw), method));
   }
   std::vector<int> names(study.classes.size());
   std::iota(names.begin(), names.end(), 0);
-  for (int i = 0; i < kRenamings; ++i) {
+  for (int i = 0; i < kPermutations; ++i) {
     shuffle(std::span(names), random_);
-    renamings_.push_back(names);
+    permutations_.push_back(names);
   }
   picks_.resize(blocks * static_cast<std::size_t>(deals));
-  for (auto& pick : picks_) pick = static_cast<int>(random_.below(kOrders * kRenamings));
+  for (auto& pick : picks_) pick = static_cast<int>(random_.below(kOrders * kPermutations));
 }
 
-std::vector<int> OrderDraws::drawn(std::size_t block, int deal,
-                                   const std::vector<int>& places) const {
+std::vector<int> OrderDraws::classes_at(std::size_t block, int deal,
+                                        const std::vector<int>& places) const {
   const int pick = picks_[static_cast<std::size_t>(deal) * blocks_ + block];
-  const std::vector<int>& order = orders_[pick / kRenamings];
-  const std::vector<int>& names = renamings_[pick % kRenamings];
+  const std::vector<int>& order = orders_[pick / kPermutations];
+  const std::vector<int>& names = permutations_[pick % kPermutations];
   std::vector<int> classes;
   classes.reserve(places.size());
   for (const int place : places) classes.push_back(names[order[place]]);

@@ -20,36 +20,34 @@ using analysis::Proportion;
 using analysis::SessionOutcome;
 using analysis::TrialOutcome;
 
-/// Some trials of one participant. The pointers refer to the outcomes.
-using OwnTrials = std::vector<const TrialOutcome*>;
+/// Trials of one participant; pointers into the outcomes.
+using PersonTrials = std::vector<const TrialOutcome*>;
 
-/// A participant whose session counts.
+/// A participant with a counted session.
 struct Person {
   std::string name;
-  OwnTrials trials;  ///< of sessions that count
+  PersonTrials trials;  ///< of counted sessions
 };
 
-/// The people of a study with the selected trials.
 /// \param outcomes  must outlive the result
-/// \return in the order of sessions, including people without a trial; trials in the order of the
-///   outcomes
-[[nodiscard]] std::vector<Person> people_with(
-    const Outcomes& outcomes, const std::function<bool(const TrialOutcome&)>& is_wanted);
+/// \return people in the order of sessions, including those without a selected trial; trials in the
+///   order of the outcomes
+[[nodiscard]] std::vector<Person> people_with_trials(
+    const Outcomes& outcomes, const std::function<bool(const TrialOutcome&)>& is_included);
 
-/// Sorts trials by when they were felt. An interrupted trial takes the place of its repetition.
-void sort_as_felt(OwnTrials& trials);
+/// Sorts trials by the time they were felt. An interrupted trial has the time of its repetition.
+void sort_in_felt_order(PersonTrials& trials);
 
-/// All presentations that are not void, in the order in which they were felt. Interrupted
-/// presentations are left out.
-[[nodiscard]] OwnTrials as_felt(const Outcomes& outcomes);
+/// All presentations except void and interrupted ones, in the order in which they were felt.
+[[nodiscard]] PersonTrials trials_in_felt_order(const Outcomes& outcomes);
 
-/// Maps sessions to participants, who are identified by their first session. In a study with one
+/// Maps each session to its participant's first session, which identifies the participant. With one
 /// visit, every session maps to itself.
 class FirstSessions {
  public:
   explicit FirstSessions(const Outcomes& outcomes);
 
-  [[nodiscard]] int of(int session) const {
+  [[nodiscard]] int first_of(int session) const {
     const auto found = first_.find(session);
     return found == first_.end() ? session : found->second;
   }
@@ -60,13 +58,13 @@ class FirstSessions {
 
 [[nodiscard]] std::set<int> counted_sessions(const Outcomes& outcomes);
 
-/// Completed sessions that would count if they were not excluded. A participant who was excluded
-/// and started again is left out, because the new session counts already.
+/// Completed sessions that would count if they were not excluded. Omits participants who were
+/// excluded and started again, because their new session counts.
 [[nodiscard]] std::set<int> excluded_sessions(const Outcomes& outcomes);
 
-[[nodiscard]] Proportion accuracy_of(const OwnTrials& trials);
+[[nodiscard]] Proportion accuracy_of(const PersonTrials& trials);
 
-/// Whether a trial ended in a way that counts: with an answer, or by a time-out.
+/// Whether a trial ended with an answer or a time-out.
 [[nodiscard]] bool has_ended(const TrialOutcome& trial) noexcept;
 
 }  // namespace touchtrial::choices

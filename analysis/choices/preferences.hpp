@@ -1,5 +1,5 @@
-/// \file Tests of whether participants prefer an answer whatever they felt. The tests are by
-/// person, because different preferences cancel out in a mean. Sources: docs/statistics.md, "Any
+/// \file Tests of whether participants prefer an answer regardless of what they felt. The tests are
+/// by person, because different preferences cancel out in a mean. Sources: docs/statistics.md, "Any
 /// participant" and "Preferences".
 #pragma once
 
@@ -16,57 +16,58 @@ namespace touchtrial::choices {
 /// One participant's answers.
 struct Preference {
   std::string participant;
-  int choice = 0;              ///< the one named most often beyond expectation
+  int choice = 0;              ///< named most often beyond expectation
   std::optional<int> place{};  ///< its place in the last session, from 0; only if layouts differ
   int answers = 0;
-  int named = 0;               ///< of them, those that name it
-  Proportion right_there;      ///< right answers where it was right
-  Proportion right_elsewhere;  ///< and where another choice was
-  double p = 1.0;              ///< that there is no preference
+  int named_count = 0;         ///< answers that name the choice
+  Proportion right_there;      ///< right answers where the choice was right
+  Proportion right_elsewhere;  ///< right answers where another choice was right
+  double p = 1.0;              ///< null hypothesis: no preference
   double p_holm = 1.0;         ///< over participants
 };
 
 struct Preferences {
-  std::vector<Preference> people;  ///< with an answer
-  GlobalNullResult anybody;
+  std::vector<Preference> people;  ///< only those with an answer
+  GlobalNullResult global_null;
 
-  /// The people whose own p is within the level, if anybody prefers a choice.
-  [[nodiscard]] std::vector<const Preference*> of_those_who_prefer() const;
+  /// The people with p <= kSignificanceLevel, if anybody prefers a choice.
+  [[nodiscard]] std::vector<const Preference*> people_with_preference() const;
 };
 
-/// For studies that draw the right choice of each trial, all m choices being equally likely.
-/// Without a preference, accuracy does not depend on which choice is right, and wrong answers are
-/// spread evenly. With c the share right of n trials and choice k right in T_k of them, S_k =
-/// named_k - c T_k - (1 - c) (n - T_k) / (m - 1) then has mean 0. Right answers keep their places,
-/// which levels may follow, and choices are redrawn; p is of the sum of squares of S_k.
+/// Tests preferences in studies that draw the right choice of each trial uniformly from m choices.
+/// Without a preference, accuracy does not depend on the right choice, and wrong answers are
+/// uniform. If c is the accuracy over n trials and choice k was right in T_k of them, then
+///   S_k = named_k - c T_k - (1 - c) (n - T_k) / (m - 1)
+/// has mean 0. The test redraws the choices, but not which answers are right, because levels may
+/// follow from these. The statistic is the sum of squares of S_k.
 [[nodiscard]] Preferences preferences_by_target(std::span<const Person> people, int choices,
-                                                const Which& which,
-                                                int most_deals = analysis::kGlobalNullDeals);
+                                                const TrialFilter& is_included,
+                                                int max_deals = analysis::kGlobalNullDeals);
 
-/// For studies with stimuli of unknown similarity. Among wrong answers that confuse two stimuli,
-/// which one was named does not depend on the participant if nobody has preferences of their own;
-/// each deal permutes the names between people. A preference that everybody has for one stimulus
-/// counts as confusion. A place that everybody prefers is detected, because each participant has a
-/// different layout.
-/// \param people  with scored trials; those without an answer do not count
+/// Tests preferences in studies with stimuli of unknown similarity. If nobody has individual
+/// preferences, wrong answers that confuse two stimuli name either one independently of the
+/// participant; each deal permutes the names among people. A preference for one stimulus that
+/// everybody shares counts as confusion. A place that everybody prefers is detected, because
+/// layouts differ.
+/// \param people  with scored trials; trials without an answer do not count
 [[nodiscard]] Preferences preferences_among_errors(std::span<const Person> people, int choices,
-                                                   int most_deals = analysis::kGlobalNullDeals);
+                                                   int max_deals = analysis::kGlobalNullDeals);
 
 /// One place on the answer screen.
 struct PlaceUse {
-  int named = 0;
-  GroupTest excess;  ///< share of participants' answers less 1 / places
+  int named_count = 0;
+  GroupTest excess;  ///< share of participants' answers minus 1 / places
 };
 
 /// Answers by their places in layouts that are drawn at random for each participant.
 struct AnswersByPlace {
   std::vector<PlaceUse> places;  ///< in the order of the screen
-  double p = 1.0;                ///< that all people together prefer no place; layouts are redrawn
+  double p = 1.0;                ///< null hypothesis: no place is preferred; layouts are redrawn
   int deals = 0;                 ///< of layouts
-  Preferences own;               ///< preferences_among_errors
+  Preferences preferences;       ///< preferences_among_errors
 };
 
-/// \param people  as above
+/// \param people  as in preferences_among_errors
 /// \return nothing without an answer at a place
 [[nodiscard]] std::optional<AnswersByPlace> answers_by_place(std::span<const Person> people,
                                                              int choices);

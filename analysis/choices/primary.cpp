@@ -19,7 +19,7 @@ using analysis::StratifiedMean;
 using analysis::without_noise;
 using study::Estimand;
 
-int method_labelled(const study::Study& study, const std::string& label) {
+int method_index_of(const study::Study& study, const std::string& label) {
   const auto found = std::ranges::find(study.methods, label, &study::StudyMethod::label);
   return static_cast<int>(found - study.methods.begin());
 }
@@ -29,8 +29,8 @@ PrimaryQuestion registered_question(const study::Study& study) {
   PrimaryQuestion question;
   question.estimand = registered.estimand;
   if (registered.methods.size() == 2) {
-    question.first = method_labelled(study, registered.methods[0]);
-    question.second = method_labelled(study, registered.methods[1]);
+    question.first = method_index_of(study, registered.methods[0]);
+    question.second = method_index_of(study, registered.methods[1]);
   }
   question.test = registered.test;
   question.sides = registered.one_sided ? Sides::one : Sides::two;
@@ -46,41 +46,42 @@ bool is_difference(const PrimaryQuestion& question) {
 
 struct SelectedPeople {
   std::vector<CrossoverPerson> people;
-  std::vector<int> sessions;  ///< of each of them, the first
+  std::vector<int> sessions;  ///< the first of each person
   int trials = 0;
 };
 
-/// One participant's trials with one of the question's methods.
-struct OwnShare {
+/// One participant's accuracy with a method of the question.
+struct MethodShare {
   Proportion right;
   int first_block = std::numeric_limits<int>::max();
 };
 
-/// The selected trials of each participant with each method.
-std::map<int, std::pair<OwnShare, OwnShare>> shares_of(const PrimaryQuestion& question,
-                                                       const Outcomes& outcomes,
-                                                       const Selection& selection) {
+/// The accuracies with the first and the second method, by participant.
+std::map<int, std::pair<MethodShare, MethodShare>> shares_of(const PrimaryQuestion& question,
+                                                             const Outcomes& outcomes,
+                                                             const Selection& selection) {
   const FirstSessions people(outcomes);
-  const std::set<int> whole = people_with_all_visits(outcomes, selection, people);
-  std::map<int, std::pair<OwnShare, OwnShare>> shares;
+  const std::set<int> complete = people_with_all_visits(outcomes, selection, people);
+  std::map<int, std::pair<MethodShare, MethodShare>> shares;
   for (const TrialOutcome& trial : outcomes.trials) {
-    if (!selection.has(trial) || !outcomes.design.enters_analysis(trial.visit)) continue;
-    const bool first = trial.stimulus.method == question.first;
-    const bool second = is_difference(question) && trial.stimulus.method == question.second;
-    if (!first && !second) continue;
-    const int person = people.of(trial.row.session);
-    if (!whole.contains(person)) continue;
-    auto& [of_first, of_second] = shares[person];
-    OwnShare& own = first ? of_first : of_second;
-    own.right.add(trial.correct());
-    own.first_block = std::min(own.first_block, trial.row.block);
+    if (!selection.includes(trial) || !outcomes.design.enters_analysis(trial.visit)) continue;
+    const bool is_first = trial.stimulus.method == question.first;
+    const bool is_second = is_difference(question) && trial.stimulus.method == question.second;
+    if (!is_first && !is_second) continue;
+    const int person = people.first_of(trial.row.session);
+    if (!complete.contains(person)) continue;
+    auto& [first_method, second_method] = shares[person];
+    MethodShare& share = is_first ? first_method : second_method;
+    share.right.add(trial.correct());
+    share.first_block = std::min(share.first_block, trial.row.block);
   }
   return shares;
 }
 
 std::map<int, int> order_blocks_of(const Outcomes& outcomes) {
   std::map<int, int> blocks;
-  for (const SessionOutcome& one : outcomes.sessions) blocks[one.row.session] = one.order_block;
+  for (const SessionOutcome& session : outcomes.sessions)
+    blocks[session.row.session] = session.order_block;
   return blocks;
 }
 
@@ -88,15 +89,15 @@ SelectedPeople people_of(const PrimaryQuestion& question, const Outcomes& outcom
                          const Selection& selection) {
   const std::map<int, int> blocks = order_blocks_of(outcomes);
   SelectedPeople selected;
-  for (const auto& [session, own] : shares_of(question, outcomes, selection)) {
-    const auto& [first, second] = own;
+  for (const auto& [session, method_shares] : shares_of(question, outcomes, selection)) {
+    const auto& [first, second] = method_shares;
     if (is_difference(question) && (first.right.n == 0 || second.right.n == 0)) continue;
     selected.trials += first.right.n + second.right.n;
-    const double with_first = first.right.share().value_or(0.0);
-    const double difference = without_noise(with_first - second.right.share().value_or(0.0));
+    const double first_share = first.right.share().value_or(0.0);
+    const double difference = without_noise(first_share - second.right.share().value_or(0.0));
     selected.sessions.push_back(session);
     const auto block = blocks.find(session);
-    selected.people.push_back({is_difference(question) ? difference : with_first,
+    selected.people.push_back({is_difference(question) ? difference : first_share,
                                first.first_block < second.first_block,
                                block == blocks.end() ? -1 : block->second});
   }
@@ -115,9 +116,9 @@ std::optional<double> bound_of(const PrimaryQuestion& question,
   return interval ? std::optional(interval->low) : std::nullopt;
 }
 
-/// Adds the results that exist only for the registered selection.
-void put_registered_choice(const PrimaryQuestion& question, int classes,
-                           std::span<const CrossoverPerson> people, PrimaryResult& result) {
+/// Adds the results that only the registered selection has.
+void add_registered_results(const PrimaryQuestion& question, int classes,
+                            std::span<const CrossoverPerson> people, PrimaryResult& result) {
   result.p = primary_p(question, classes, people);
   result.bound = bound_of(question, people);
   if (question.test != study::RegisteredTest::crossover) {
@@ -129,7 +130,7 @@ void put_registered_choice(const PrimaryQuestion& question, int classes,
   result.permutation = crossover_permutation(people, result.null, question.sides);
 }
 
-/// Whether t was undefined, so that p is from another test.
+/// Whether t is undefined, so that p is from another test.
 bool has_no_t(const PrimaryQuestion& question, std::span<const CrossoverPerson> people,
               const PrimaryResult& result) {
   switch (question.test) {
@@ -143,10 +144,10 @@ bool has_no_t(const PrimaryQuestion& question, std::span<const CrossoverPerson> 
   return false;
 }
 
-/// With stations as strata, if there are several.
-std::optional<StratifiedMean> over_stations(const PrimaryQuestion& question,
-                                            const Outcomes& outcomes,
-                                            const SelectedPeople& selected) {
+/// The mean with stations as strata; nothing with one station.
+std::optional<StratifiedMean> station_mean(const PrimaryQuestion& question,
+                                           const Outcomes& outcomes,
+                                           const SelectedPeople& selected) {
   // The period effect is estimated over all stations together.
   if (question.test == study::RegisteredTest::crossover) return std::nullopt;
   std::map<int, int> station_of;
@@ -211,24 +212,25 @@ std::string test_words(const PrimaryQuestion& question) {
 }
 
 std::string test_words_without_t(const PrimaryQuestion& question) {
-  const bool crossover = question.test == study::RegisteredTest::crossover;
+  const bool is_crossover = question.test == study::RegisteredTest::crossover;
   return fmt::format("{} and there is no t, {}",
-                     crossover ? "orders dealt anew, because people do not differ within an order"
-                               : "sign flips over participants, because these do not differ",
+                     is_crossover
+                         ? "orders dealt anew, because people do not differ within an order"
+                         : "sign flips over participants, because these do not differ",
                      question.sides == Sides::one ? "one-sided" : "two-sided");
 }
 
 std::vector<double> differences_of(std::span<const CrossoverPerson> people) {
   std::vector<double> differences;
-  for (const CrossoverPerson& one : people) differences.push_back(one.difference);
+  for (const CrossoverPerson& person : people) differences.push_back(person.difference);
   return differences;
 }
 
 PrimaryEstimate primary_estimate(const PrimaryQuestion& question,
                                  std::span<const CrossoverPerson> people, double level) {
   if (question.test == study::RegisteredTest::crossover) {
-    const auto found = crossover_estimate(people, 0.0, question.sides, level);
-    return {found.effect, found.interval};
+    const auto estimate = crossover_estimate(people, 0.0, question.sides, level);
+    return {estimate.effect, estimate.interval};
   }
   const MeanEstimate mean = participant_mean(differences_of(people), range_of(question), level);
   return {mean.mean, mean.known_interval()};
@@ -258,18 +260,18 @@ std::vector<analysis::AboveChance> above_chance(const PrimaryQuestion& question,
                                                 const Selection& selection) {
   std::vector<double> first;
   std::vector<double> second;
-  for (const auto& [session, own] : shares_of(question, outcomes, selection)) {
-    const auto& [of_first, of_second] = own;
-    if (of_first.right.n == 0 || of_second.right.n == 0) continue;
-    first.push_back(*of_first.right.share());
-    second.push_back(*of_second.right.share());
+  for (const auto& [session, method_shares] : shares_of(question, outcomes, selection)) {
+    const auto& [first_method, second_method] = method_shares;
+    if (first_method.right.n == 0 || second_method.right.n == 0) continue;
+    first.push_back(*first_method.right.share());
+    second.push_back(*second_method.right.share());
   }
   const double chance = 1.0 / static_cast<double>(outcomes.classes.size());
-  const auto held = [&](int method, const std::vector<double>& shares) {
+  const auto above_chance_of = [&](int method, const std::vector<double>& shares) {
     return analysis::AboveChance{outcomes.methods[method], analysis::participant_mean(shares).mean,
                                  t_test_p(shares, chance, Sides::one)};
   };
-  return {held(question.first, first), held(question.second, second)};
+  return {above_chance_of(question.first, first), above_chance_of(question.second, second)};
 }
 
 std::optional<PrimaryResult> primary_result(const Outcomes& outcomes) {
@@ -287,36 +289,36 @@ std::optional<PrimaryResult> primary_result(const Outcomes& outcomes) {
                        .interval_level = question->interval_level(),
                        .smallest_effect = question->smallest_effect,
                        .margin = question->margin};
-  const std::vector<Selection> chosen = selections(outcomes);
+  const std::vector<Selection> all_selections = selections(outcomes);
   std::vector<SelectedPeople> people;
-  for (const Selection& selection : chosen) {
+  for (const Selection& selection : all_selections) {
     people.push_back(people_of(*question, outcomes, selection));
   }
   const analysis::StudyCourse course =
       course_of(outcomes, static_cast<int>(people.front().people.size()));
   // After registered looks, intervals and limits have the level of the test.
-  PrimaryQuestion at_level = *question;
+  PrimaryQuestion adjusted_question = *question;
   if (const auto& registered = outcomes.design.registration.analysis) {
-    at_level.alpha = level_of(result, course, registered->spending);
-    result.level = at_level.alpha;
-    result.interval_level = at_level.interval_level();
+    adjusted_question.alpha = level_of(result, course, registered->spending);
+    result.level = adjusted_question.alpha;
+    result.interval_level = adjusted_question.interval_level();
   }
-  put_registered_choice(at_level, classes, people.front().people, result);
-  if (has_no_t(at_level, people.front().people, result)) {
-    result.test = test_words_without_t(at_level);
+  add_registered_results(adjusted_question, classes, people.front().people, result);
+  if (has_no_t(adjusted_question, people.front().people, result)) {
+    result.test = test_words_without_t(adjusted_question);
   }
   if (question->margin) {
-    result.above_chance = above_chance(*question, outcomes, chosen.front());
+    result.above_chance = above_chance(*question, outcomes, all_selections.front());
   }
-  result.stations = over_stations(at_level, outcomes, people.front());
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    const PrimaryEstimate found =
-        primary_estimate(at_level, people[i].people, result.interval_level);
-    result.choices.push_back({chosen[i].name, chosen[i].words,
+  result.stations = station_mean(adjusted_question, outcomes, people.front());
+  for (std::size_t i = 0; i < all_selections.size(); ++i) {
+    const PrimaryEstimate estimate =
+        primary_estimate(adjusted_question, people[i].people, result.interval_level);
+    result.choices.push_back({all_selections[i].name, all_selections[i].words,
                               static_cast<int>(people[i].people.size()), people[i].trials,
-                              found.estimate, found.interval});
+                              estimate.estimate, estimate.interval});
   }
-  judge(result, course);
+  set_verdict(result, course);
   return result;
 }
 

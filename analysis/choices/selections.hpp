@@ -1,4 +1,4 @@
-/// \file The selections of sessions and trials under which a registered question is answered.
+/// \file The selections of sessions and trials for which a registered question is answered.
 /// Source: docs/statistics.md, "The registered question".
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace touchtrial::choices {
 
-/// Which sessions and which of their trials enter an estimate.
+/// The sessions and trials that enter an estimate.
 struct Selection {
   std::string name;   ///< "registered", "taken", "put_back", "all", "valid", "answered"
   std::string words;  ///< what it excludes
@@ -18,24 +18,26 @@ struct Selection {
   bool only_valid = false;
   bool only_answered = false;
 
-  /// Whether the selection includes a trial of any kind.
-  [[nodiscard]] bool admits(const TrialOutcome& trial) const {
+  /// Whether the selection includes a trial, scored or not.
+  [[nodiscard]] bool includes_any(const TrialOutcome& trial) const {
     return has_ended(trial) && sessions.contains(trial.row.session) &&
            (!only_valid || trial.valid()) && (!only_answered || trial.response);
   }
-  /// Whether it includes a scored trial.
-  [[nodiscard]] bool has(const TrialOutcome& trial) const { return trial.scored && admits(trial); }
+  /// Whether the trial is scored and included.
+  [[nodiscard]] bool includes(const TrialOutcome& trial) const {
+    return trial.scored && includes_any(trial);
+  }
 };
 
-/// The registered choice first.
+/// \return the registered selection first
 [[nodiscard]] std::vector<Selection> selections(const Outcomes& outcomes);
 
-/// The people with all required visits, by their first session.
+/// The people who completed all required visits, by first session.
 [[nodiscard]] std::set<int> people_with_all_visits(const Outcomes& outcomes,
                                                    const Selection& selection,
                                                    const FirstSessions& people);
 
-/// ", over all visits"; empty in a study with one.
+/// ", over all visits"; empty with one visit.
 [[nodiscard]] std::string visit_words(const study::Study& study);
 
 }  // namespace touchtrial::choices

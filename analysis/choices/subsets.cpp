@@ -21,30 +21,30 @@ using analysis::quartiles;
 using analysis::Quartiles;
 using analysis::RatedAnswer;
 
-/// A counted trial, and its place among the trials that the participant felt.
+/// A counted trial and its place.
 struct PlacedTrial {
   const TrialOutcome* trial = nullptr;
   int place = 0;  ///< from 1, among the participant's scored trials with the method
 };
 
 std::vector<PlacedTrial> placed_trials(const Outcomes& outcomes, int method) {
-  std::vector<PlacedTrial> placed;
-  const TrialOutcome* before = nullptr;
+  std::vector<PlacedTrial> result;
+  const TrialOutcome* previous = nullptr;
   int place = 0;
-  for (const TrialOutcome* trial : as_felt(outcomes)) {
-    if (before == nullptr || before->row.session != trial->row.session) place = 0;
-    const bool scored = trial->scored && trial->stimulus.method == method;
-    if (scored) ++place;
-    if (scored && trial->counted) placed.push_back({trial, place});
-    before = trial;
+  for (const TrialOutcome* trial : trials_in_felt_order(outcomes)) {
+    if (previous == nullptr || previous->row.session != trial->row.session) place = 0;
+    const bool is_scored = trial->scored && trial->stimulus.method == method;
+    if (is_scored) ++place;
+    if (is_scored && trial->counted) result.push_back({trial, place});
+    previous = trial;
   }
-  return placed;
+  return result;
 }
 
-/// A group's place in the table and its name.
+/// A group's sort key and name.
 using Group = std::pair<int, std::string>;
 
-Group group_of_exemplar(const Outcomes& outcomes, const TrialOutcome& trial) {
+Group exemplar_group(const Outcomes& outcomes, const TrialOutcome& trial) {
   const auto [class_index, exemplar, method] = trial.stimulus;
   constexpr int kMaxExemplars = 1 << 16;
   return {class_index * kMaxExemplars + exemplar,
@@ -52,14 +52,14 @@ Group group_of_exemplar(const Outcomes& outcomes, const TrialOutcome& trial) {
 }
 
 /// The methods of each participant in the order in which they were first presented.
-std::map<int, std::vector<int>> orders_of_methods(const Outcomes& outcomes,
-                                                  const FirstSessions& people) {
+std::map<int, std::vector<int>> method_orders(const Outcomes& outcomes,
+                                              const FirstSessions& people) {
   // Session, trial and method.
   std::map<int, std::vector<std::tuple<int, int, int>>> first_trials;
   for (const TrialOutcome& trial : outcomes.trials) {
     if (trial.role != study::Role::catch_trial) {
-      first_trials[people.of(trial.row.session)].emplace_back(trial.row.session, trial.row.trial,
-                                                              trial.stimulus.method);
+      first_trials[people.first_of(trial.row.session)].emplace_back(
+          trial.row.session, trial.row.trial, trial.stimulus.method);
     }
   }
   std::map<int, std::vector<int>> orders;
@@ -73,21 +73,21 @@ std::map<int, std::vector<int>> orders_of_methods(const Outcomes& outcomes,
   return orders;
 }
 
-Group group_of_order(const Outcomes& outcomes, const std::vector<int>& order) {
-  int place = 0;
+Group order_group_of(const Outcomes& outcomes, const std::vector<int>& order) {
+  int sort_key = 0;
   std::vector<std::string> labels;
   for (const int method : order) {
-    place = place * static_cast<int>(outcomes.methods.size()) + method;
+    sort_key = sort_key * static_cast<int>(outcomes.methods.size()) + method;
     labels.push_back(outcomes.methods[method]);
   }
-  return {place, fmt::format("{}", fmt::join(labels, ", then "))};
+  return {sort_key, fmt::format("{}", fmt::join(labels, ", then "))};
 }
 
-/// The mean of people's own shares; those without a trial are left out.
-template <typename Own>
-MeanEstimate mean_of_shares(const std::map<Own, Proportion>& people) {
+/// The mean over participants; those without a trial are left out.
+template <typename Id>
+MeanEstimate mean_of_shares(const std::map<Id, Proportion>& people) {
   std::vector<double> shares;
-  for (const auto& [own, right] : people) {
+  for (const auto& [id, right] : people) {
     if (const auto share = right.share()) shares.push_back(*share);
   }
   return participant_mean(shares);
@@ -95,11 +95,11 @@ MeanEstimate mean_of_shares(const std::map<Own, Proportion>& people) {
 
 /// Counts trials and correct answers by the group that `group_of` returns.
 template <typename GroupOf>
-Breakdown broken_down(BreakdownKind kind, const std::vector<PlacedTrial>& trials,
-                      GroupOf group_of) {
+Breakdown breakdown_by(BreakdownKind kind, const std::vector<PlacedTrial>& trials,
+                       GroupOf group_of) {
   std::map<Group, Proportion> groups;
-  for (const PlacedTrial& placed : trials) {
-    groups[group_of(placed)].add(placed.trial->correct());
+  for (const PlacedTrial& placed_trial : trials) {
+    groups[group_of(placed_trial)].add(placed_trial.trial->correct());
   }
   Breakdown breakdown{kind, {}};
   for (const auto& [group, accuracy] : groups) {
@@ -108,20 +108,21 @@ Breakdown broken_down(BreakdownKind kind, const std::vector<PlacedTrial>& trials
   return breakdown;
 }
 
-/// The same with the mean over participants.
+/// breakdown_by with means over participants.
 template <typename GroupOf>
-Breakdown by_people(BreakdownKind kind, const std::vector<PlacedTrial>& trials, GroupOf group_of) {
-  Breakdown breakdown = broken_down(kind, trials, group_of);
+Breakdown breakdown_by_people(BreakdownKind kind, const std::vector<PlacedTrial>& trials,
+                              GroupOf group_of) {
+  Breakdown breakdown = breakdown_by(kind, trials, group_of);
   std::map<Group, std::map<std::string, Proportion>> groups;
-  for (const PlacedTrial& placed : trials) {
-    groups[group_of(placed)][placed.trial->participant].add(placed.trial->correct());
+  for (const PlacedTrial& placed_trial : trials) {
+    groups[group_of(placed_trial)][placed_trial.trial->participant].add(
+        placed_trial.trial->correct());
   }
   auto group = breakdown.groups.begin();
   for (const auto& [name, people] : groups) (group++)->mean = mean_of_shares(people);
   return breakdown;
 }
 
-/// Whether any class has several images, which is required for a breakdown by image.
 bool has_several_exemplars(const Outcomes& outcomes) {
   return std::ranges::any_of(outcomes.exemplars,
                              [](const auto& images) { return images.size() > 1; });
@@ -173,24 +174,24 @@ using RatedAnswers = std::map<int, std::vector<RatedAnswer>>;  ///< by session
 RatedAnswers rated_answers(const Outcomes& outcomes, int method) {
   RatedAnswers rated;
   for (const TrialOutcome& trial : outcomes.trials) {
-    const bool asked = trial.counted && trial.stimulus.method == method;
-    if (!asked || !trial.response || !trial.row.confidence) continue;
+    const bool is_of_method = trial.counted && trial.stimulus.method == method;
+    if (!is_of_method || !trial.response || !trial.row.confidence) continue;
     rated[trial.row.session].push_back({*trial.row.confidence, trial.correct()});
   }
   return rated;
 }
 
 RatedAccuracy accuracy_at(int rating, const RatedAnswers& rated) {
-  RatedAccuracy at{rating, {}, {}};
+  RatedAccuracy accuracy{rating, {}, {}};
   std::map<int, Proportion> by_session;
   for (const auto& [session, answers] : rated) {
-    for (const RatedAnswer& one : answers) {
-      if (one.rating == rating) by_session[session].add(one.correct);
+    for (const RatedAnswer& answer : answers) {
+      if (answer.rating == rating) by_session[session].add(answer.correct);
     }
-    at.accuracy += by_session[session];
+    accuracy.accuracy += by_session[session];
   }
-  at.mean = mean_of_shares(by_session);
-  return at;
+  accuracy.mean = mean_of_shares(by_session);
+  return accuracy;
 }
 
 }  // namespace
@@ -210,33 +211,37 @@ std::vector<Breakdown> breakdowns(const Outcomes& outcomes, int method) {
   const std::vector<PlacedTrial> trials = placed_trials(outcomes, method);
   std::vector<Breakdown> all;
   const auto add = [&](BreakdownKind kind, auto group_of) {
-    Breakdown breakdown = broken_down(kind, trials, group_of);
+    Breakdown breakdown = breakdown_by(kind, trials, group_of);
     if (breakdown.groups.size() > 1) all.push_back(std::move(breakdown));
   };
   if (has_several_exemplars(outcomes)) {
-    add(BreakdownKind::exemplar,
-        [&](const PlacedTrial& placed) { return group_of_exemplar(outcomes, *placed.trial); });
+    add(BreakdownKind::exemplar, [&](const PlacedTrial& placed_trial) {
+      return exemplar_group(outcomes, *placed_trial.trial);
+    });
   }
-  add(BreakdownKind::trial,
-      [](const PlacedTrial& placed) { return Group(placed.place, std::to_string(placed.place)); });
+  add(BreakdownKind::trial, [](const PlacedTrial& placed_trial) {
+    return Group(placed_trial.place, std::to_string(placed_trial.place));
+  });
   if (outcomes.methods.size() > 1 && outcomes.design.trials.blocks == study::Blocks::by_method) {
     const FirstSessions people(outcomes);
-    const std::map<int, std::vector<int>> orders = orders_of_methods(outcomes, people);
-    add(BreakdownKind::order_group, [&](const PlacedTrial& placed) {
-      return group_of_order(outcomes, orders.at(people.of(placed.trial->row.session)));
+    const std::map<int, std::vector<int>> orders = method_orders(outcomes, people);
+    add(BreakdownKind::order_group, [&](const PlacedTrial& placed_trial) {
+      return order_group_of(outcomes, orders.at(people.first_of(placed_trial.trial->row.session)));
     });
   }
   if (outcomes.design.visits.count > 1) {
-    all.push_back(by_people(BreakdownKind::visit, trials, [](const PlacedTrial& placed) {
-      return Group(placed.trial->visit, std::to_string(placed.trial->visit));
-    }));
+    all.push_back(
+        breakdown_by_people(BreakdownKind::visit, trials, [](const PlacedTrial& placed_trial) {
+          return Group(placed_trial.trial->visit, std::to_string(placed_trial.trial->visit));
+        }));
   }
   const std::vector<std::string>& groups = outcomes.design.groups.labels;
   if (!groups.empty()) {
-    all.push_back(by_people(BreakdownKind::group, trials, [&](const PlacedTrial& placed) {
-      const int group = placed.trial->group.value_or(-1);
-      return Group(group, group < 0 ? "none" : groups[static_cast<std::size_t>(group)]);
-    }));
+    all.push_back(
+        breakdown_by_people(BreakdownKind::group, trials, [&](const PlacedTrial& placed_trial) {
+          const int group = placed_trial.trial->group.value_or(-1);
+          return Group(group, group < 0 ? "none" : groups[static_cast<std::size_t>(group)]);
+        }));
   }
   return all;
 }
@@ -255,16 +260,16 @@ std::vector<SubsetAccuracy> robustness(const Outcomes& outcomes, int method) {
   const std::set<int> excluded = excluded_sessions(outcomes);
   std::vector<SubsetAccuracy> all;
   for (const TrialSubset subset : kSubsets) {
-    SubsetAccuracy& here = all.emplace_back();
-    here.subset = subset;
+    SubsetAccuracy& accuracy = all.emplace_back();
+    accuracy.subset = subset;
     std::map<int, Proportion> by_session;
     for (const TrialOutcome& trial : outcomes.trials) {
-      const bool of_method = trial.scored && trial.stimulus.method == method;
-      if (!of_method || !belongs_to(subset, trial, excluded)) continue;
-      here.pooled.add(trial.correct());
+      const bool is_scored = trial.scored && trial.stimulus.method == method;
+      if (!is_scored || !belongs_to(subset, trial, excluded)) continue;
+      accuracy.pooled.add(trial.correct());
       by_session[trial.row.session].add(trial.correct());
     }
-    here.mean = mean_of_shares(by_session);
+    accuracy.mean = mean_of_shares(by_session);
   }
   return all;
 }
@@ -272,13 +277,13 @@ std::vector<SubsetAccuracy> robustness(const Outcomes& outcomes, int method) {
 std::vector<ReactionTimes> reaction_times(const Outcomes& outcomes, int method) {
   std::vector<Times> times(outcomes.classes.size() + 1);
   for (const TrialOutcome& trial : outcomes.trials) {
-    const bool asked = trial.counted && trial.stimulus.method == method;
-    if (!asked || !trial.response || !trial.row.answered_at) continue;
+    const bool is_of_method = trial.counted && trial.stimulus.method == method;
+    if (!is_of_method || !trial.response || !trial.row.answered_at) continue;
     times[trial.stimulus.class_index].add(trial.row);
     times.back().add(trial.row);
   }
   std::vector<ReactionTimes> all;
-  for (Times& of_class : times) all.push_back(summary_of(std::move(of_class)));
+  for (Times& class_times : times) all.push_back(summary_of(std::move(class_times)));
   return all;
 }
 

@@ -75,20 +75,21 @@ DataCell flag(bool value) {
 }
 
 std::string seconds_text(std::chrono::nanoseconds time) {
-  constexpr std::uint64_t kPerSecond = 1'000'000'000;
-  const bool negative = time.count() < 0;
+  constexpr std::uint64_t kNanosecondsPerSecond = 1'000'000'000;
+  const bool is_negative = time.count() < 0;
   const auto count = static_cast<std::uint64_t>(time.count());
-  const std::uint64_t size = negative ? 0 - count : count;
+  const std::uint64_t magnitude = is_negative ? 0 - count : count;
   std::string text =
-      fmt::format("{}{}.{:09}", negative ? "-" : "", size / kPerSecond, size % kPerSecond);
+      fmt::format("{}{}.{:09}", is_negative ? "-" : "", magnitude / kNanosecondsPerSecond,
+                  magnitude % kNanosecondsPerSecond);
   text.erase(text.find_last_not_of('0') + 1);
   if (text.back() == '.') text.pop_back();
   return text;
 }
 
 std::string harmless_cell(const std::string& text) {
-  const std::string shown = printable(text);
-  return begins_like_formula(text) && !number_in<double>(text) ? "'" + shown : shown;
+  const std::string printed = printable(text);
+  return begins_like_formula(text) && !number_in<double>(text) ? "'" + printed : printed;
 }
 
 std::string r_text(const std::string& text) {

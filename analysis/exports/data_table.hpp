@@ -11,7 +11,7 @@
 
 namespace touchtrial::analysis {
 
-/// One value: nothing, a text, a whole number, a number, or a time (written in seconds).
+/// One value: missing, a text, a whole number, a number, or a time (written in seconds).
 using DataCell =
     std::variant<std::monostate, std::string, std::int64_t, double, std::chrono::nanoseconds>;
 
@@ -20,7 +20,7 @@ using DataCell =
 
 /// The value, or a missing one.
 template <typename Value>
-[[nodiscard]] DataCell or_nothing(const std::optional<Value>& value) {
+[[nodiscard]] DataCell optional_cell(const std::optional<Value>& value) {
   if (!value) return std::monostate{};
   if constexpr (std::is_integral_v<Value>) {
     return std::int64_t{*value};
@@ -37,27 +37,27 @@ struct DataTable {
   std::vector<std::vector<DataCell>> rows;  ///< each as long as `columns`
 };
 
-/// The exact time in seconds, with a decimal point and as many decimals as the nanoseconds need.
+/// The exact time in seconds, with a decimal point and no trailing zeros.
 [[nodiscard]] std::string seconds_text(std::chrono::nanoseconds time);
 
 /// Free text made safe for a cell that a spreadsheet may open. Source: OWASP, "CSV Injection".
-/// \return `text` as core/printable.hpp shows it. It is preceded by an apostrophe if it is not a
-///   number and begins with =, +, -, @, a tab or a carriage return, which would make it a formula
+/// \return the printable text (core/printable.hpp), preceded by an apostrophe if it would be a
+///   formula: it is not a number and begins with =, +, -, @, a tab or a carriage return
 [[nodiscard]] std::string harmless_cell(const std::string& text);
 
-/// The text as a quoted string of R.
+/// The text as a quoted R string.
 [[nodiscard]] std::string r_text(const std::string& text);
 
 /// CSV as in RFC 4180, except that each line ends with a single line feed. The text is UTF-8
 /// without a byte order mark and begins with a header. Texts are harmless cells. A text that
 /// contains a comma, a quote or a line end is quoted. Numbers have a decimal point and the fewest
-/// digits that read back the same. A missing value is an empty field.
+/// digits that parse to the same value. A missing value is an empty field.
 /// \throws std::invalid_argument if a row and the header differ in length
 [[nodiscard]] std::string csv_text(const DataTable& table);
 
-/// The table in the form of BIDS: tab-separated UTF-8 without a byte order mark, with line feeds
-/// and decimal points; "n/a" for a missing value. An empty text counts as missing; a tab or line
-/// end in a text becomes a space. Source: BIDS specification 1.11, "Tabular files".
+/// TSV as BIDS requires: tab-separated UTF-8 without a byte order mark, with line feeds and decimal
+/// points. Missing values and empty texts are "n/a"; tabs and line ends in a text become spaces.
+/// Source: BIDS specification 1.11, "Tabular files".
 /// \throws std::invalid_argument if a row and the header differ in length
 [[nodiscard]] std::string tsv_text(const DataTable& table);
 

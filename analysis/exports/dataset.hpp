@@ -1,4 +1,4 @@
-/// \file Common parts of the dataset formats: source, options, labels, and the meanings of columns.
+/// \file Common parts of the dataset formats: source, options and labels.
 #pragma once
 
 #include "analysis/exports/people_tables.hpp"
@@ -8,7 +8,6 @@
 #include <functional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace touchtrial::analysis {
@@ -23,13 +22,14 @@ struct DatasetSource {
 struct DatasetOptions {
   std::vector<std::string> authors{};
   std::string license{};             ///< for instance "CC0"; empty: not stated
-  std::string institution{};         ///< where the data were collected; empty: not stated
+  std::string institution{};         ///< the institution that collected the data; empty: not stated
   bool traces = false;               ///< includes positions and forces of every trial
   bool stimuli = false;              ///< includes the study's images
   std::filesystem::path database{};  ///< a database to copy into the dataset; empty: none
-  Typed typed = Typed::left_out;  ///< free-text answers, notes and reasons, which may name people
-  std::vector<record::PersonalRecord> consents{};  ///< of the personal data, if they are known
-  std::function<void(int done, int of)> progress{};
+  /// Free-text answers, notes and reasons, which may name people.
+  FreeText free_text = FreeText::left_out;
+  std::vector<record::PersonalRecord> consents{};  ///< from the personal data, if available
+  std::function<void(int finished, int total)> progress{};
 };
 
 /// A label for file names that is unique among participants. Letters and digits stay as they are,
@@ -40,26 +40,11 @@ struct DatasetOptions {
 /// The letters and digits of a name; "study" if it has none.
 [[nodiscard]] std::string plain_label(const std::string& name);
 
-/// The part of the README that all formats share: how the data were collected, and what is still
-/// sealed.
-[[nodiscard]] std::string about_study(const DatasetSource& study);
+/// The README text common to all formats: how the data were collected, and what is still sealed.
+[[nodiscard]] std::string study_readme(const DatasetSource& study);
 
 /// The report as JSON; before unblinding, the report on quality.
-/// \param typed  left_out: without free-text answers
-[[nodiscard]] std::string report_in_dataset(const DatasetSource& study, Typed typed);
-
-/// The meaning of an exported column, as in docs/data-dictionary.md, "Exports".
-struct ColumnMeaning {
-  std::string description;
-  std::string unit{};                                         ///< a BIDS unit; empty: none
-  std::vector<std::pair<std::string, std::string>> levels{};  ///< values and their meanings
-};
-
-/// The prefix of rating columns, followed by the scale's id.
-inline constexpr std::string_view kRatingColumn = "rating_";
-
-/// \param column  its name in the CSV files or in BIDS
-/// \throws std::out_of_range if no export has such a column
-[[nodiscard]] ColumnMeaning meaning_of(const std::string& column);
+/// \param free_text  left_out: without free-text answers
+[[nodiscard]] std::string report_in_dataset(const DatasetSource& study, FreeText free_text);
 
 }  // namespace touchtrial::analysis

@@ -18,7 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The content of a folder's mark.
 struct FolderMark {
   std::string study;
   std::string study_id;
@@ -55,78 +54,79 @@ void make_export_folder(const fs::path& folder) {
                   "); give another folder or change its permissions");
 }
 
-/// The file names, sorted, as in a mark.
 std::set<std::string> names_of(const std::vector<ExportFile>& files) {
   std::set<std::string> names;
   for (const ExportFile& file : files) names.insert(file.name.generic_string());
   return names;
 }
 
-FolderMark mark_of(const fs::path& folder, const ExportMark& mark) {
+FolderMark read_own_mark(const fs::path& folder, const ExportMark& mark) {
   const fs::path path = folder / kExportMark;
-  if (!is_there(path)) return {mark.study, mark.study_id, {}};
-  FolderMark found = read_folder_mark(path);
-  if (found.study_id == mark.study_id) return found;
+  if (!path_exists(path)) return {mark.study, mark.study_id, {}};
+  FolderMark folder_mark = read_folder_mark(path);
+  if (folder_mark.study_id == mark.study_id) return folder_mark;
   throw FileError(one_line(folder.string()) + ": holds an export of study " +
-                  one_line(found.study) + " (" + one_line(found.study_id) +
+                  one_line(folder_mark.study) + " (" + one_line(folder_mark.study_id) +
                   "), not of this one; give another folder");
 }
 
-/// An export may replace a file that another format of this study wrote under the same name.
-/// Datasets are the exception: two of them in one folder would leave neither valid.
+/// Formats may share a folder and replace each other's files of the same name. Two datasets in one
+/// folder would leave neither valid.
 void require_no_other_dataset(const fs::path& folder, const ExportMark& mark,
-                              const FolderMark& found) {
+                              const FolderMark& folder_mark) {
   const auto is_dataset = [](const std::string& format) {
     return format == "bids" || format == "psych-ds";
   };
-  for (const auto& [format, files] : found.files) {
+  for (const auto& [format, files] : folder_mark.files) {
     if (format == mark.format || files.empty()) continue;
     if (!is_dataset(format) && !is_dataset(mark.format)) continue;
     throw FileError(one_line(folder.string()) + ": holds this study's export as " + format +
-                    ", and a dataset needs a folder of its own; give another folder");
+                    ", and a dataset needs its own folder; give another folder");
   }
 }
 
-/// Whether a name stays inside the folder. The name comes from a mark file, which anybody may have
-/// edited.
-bool stays_inside(const std::string& name) {
+/// Whether a name is inside the folder. It comes from a mark file, which may have been edited.
+bool is_inside_folder(const std::string& name) {
   const fs::path path(name);
   return !path.empty() && path.is_relative() &&
          std::none_of(path.begin(), path.end(), [](const fs::path& part) { return part == ".."; });
 }
 
 /// Checks all paths that will be written or removed.
-/// \return the listed files whose file system cannot mark them as outputs
-std::set<std::string> unmarked_files(const fs::path& folder, const FolderMark& found,
+/// \return the listed files whose file system cannot mark outputs
+std::set<std::string> unmarked_files(const fs::path& folder, const FolderMark& folder_mark,
                                      const std::set<std::string>& names,
-                                     const std::set<std::string>& before) {
-  std::set<std::string> own;
-  for (const auto& [format, files] : found.files) own.insert(files.begin(), files.end());
+                                     const std::set<std::string>& previous) {
+  std::set<std::string> listed_names;
+  for (const auto& [format, files] : folder_mark.files)
+    listed_names.insert(files.begin(), files.end());
   std::set<std::string> unmarked;
-  std::set<std::string> touched = names;
-  std::ranges::copy_if(before, std::inserter(touched, touched.end()), stays_inside);
-  for (const std::string& name : touched) {
-    if (own.contains(name) && origin_of(folder / name) == Origin::unknown) {
+  std::set<std::string> checked_names = names;
+  std::ranges::copy_if(previous, std::inserter(checked_names, checked_names.end()),
+                       is_inside_folder);
+  for (const std::string& name : checked_names) {
+    if (listed_names.contains(name) && origin_of(folder / name) == Origin::unknown) {
       unmarked.insert(name);
     } else {
-      require_output_place(folder / name);
+      require_output_path(folder / name);
     }
   }
   return unmarked;
 }
 
-/// Removes a file, and then the folders above it that are empty.
+/// Removes a file, then its parent folders that are empty.
 /// \throws FileError, naming the file, if it cannot be removed
 void remove_obsolete(const fs::path& folder, const std::string& name) {
-  clear_output_place(folder / name);
+  clear_output_path(folder / name);
   std::error_code error;
   fs::remove(folder / name, error);
   if (error) {
     throw FileError(one_line((folder / name).string()) + ": is obsolete and cannot be removed (" +
                     error.message() + "); remove it");
   }
-  for (fs::path above = fs::path(name).parent_path(); !above.empty(); above = above.parent_path()) {
-    if (!fs::remove(folder / above, error)) return;
+  for (fs::path parent = fs::path(name).parent_path(); !parent.empty();
+       parent = parent.parent_path()) {
+    if (!fs::remove(folder / parent, error)) return;
   }
 }
 
@@ -165,21 +165,21 @@ ExportFile text_file(fs::path name, std::string content, FileMode mode) {
 std::vector<fs::path> write_export(const fs::path& folder, const ExportMark& mark,
                                    const std::vector<ExportFile>& files) {
   make_export_folder(folder);
-  FolderMark found = mark_of(folder, mark);
+  FolderMark folder_mark = read_own_mark(folder, mark);
   const std::set<std::string> names = names_of(files);
-  require_no_other_dataset(folder, mark, found);
-  const std::set<std::string> before = found.files[mark.format];
-  const std::set<std::string> unmarked = unmarked_files(folder, found, names, before);
-  found.files[mark.format].insert(names.begin(), names.end());
-  replace_file(folder / kExportMark, folder_mark_json(found));
+  require_no_other_dataset(folder, mark, folder_mark);
+  const std::set<std::string> previous = folder_mark.files[mark.format];
+  const std::set<std::string> unmarked = unmarked_files(folder, folder_mark, names, previous);
+  folder_mark.files[mark.format].insert(names.begin(), names.end());
+  replace_file(folder / kExportMark, folder_mark_json(folder_mark));
   for (const std::string& name : unmarked) fs::remove(folder / name);
   write_all(folder, files);
-  for (const std::string& name : before) {
+  for (const std::string& name : previous) {
     if (names.contains(name) || unmarked.contains(name)) continue;
-    if (stays_inside(name)) remove_obsolete(folder, name);
+    if (is_inside_folder(name)) remove_obsolete(folder, name);
   }
-  found.files[mark.format] = names;
-  replace_file(folder / kExportMark, folder_mark_json(found));
+  folder_mark.files[mark.format] = names;
+  replace_file(folder / kExportMark, folder_mark_json(folder_mark));
   std::vector<fs::path> written;
   for (const ExportFile& file : files) written.push_back(folder / file.name);
   return written;

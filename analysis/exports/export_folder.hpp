@@ -1,4 +1,4 @@
-/// \file Writes exports into a folder, which holds the exports of one study and no obsolete files.
+/// \file Writes exports into a folder of one study, and removes obsolete files.
 #pragma once
 
 #include "core/files.hpp"
@@ -13,9 +13,9 @@ namespace touchtrial::analysis {
 /// One file of an export.
 struct ExportFile {
   std::filesystem::path name;  ///< relative to the export's folder
-  /// Writes the whole file as an output or throws. The folder of the file exists.
+  /// Writes the whole file as an output, or throws. The file's folder exists.
   std::function<void(const std::filesystem::path&)> write;
-  /// Writing is slow and may run on any thread, concurrently with other such files.
+  /// Whether `write` is slow and may run on any thread, concurrently with other such files.
   bool concurrent = false;
 };
 
@@ -36,15 +36,16 @@ struct ExportMark {
 /// The file name of a folder's mark.
 inline constexpr const char* kExportMark = ".touchtrial-export.json";
 
-/// Writes every file atomically into a folder, which it creates if necessary. Then removes the
-/// files that the last export of this format wrote there and that this export does not have (for
-/// example, those of a participant whose data were erased since). A mark in the folder keeps the
-/// list of files. The mark is updated before the first file is written, so that an interrupted
-/// export can be repeated. Concurrent files are written last, on all cores.
+/// Writes every file atomically into a folder, which it creates if necessary. Then removes obsolete
+/// files: files of the last export of this format that this export does not include (for example,
+/// because a participant's data were erased since). A mark in the folder lists the files. It is
+/// updated before the first file is written, so that an interrupted export can be repeated.
+/// Concurrent files are written last, on all cores.
 /// \return the files, in the order given
 /// \throws FileError if the folder or a file cannot be written
-/// \throws FileError, before anything is written, if the folder holds the export of another study
-/// \throws as require_output_place, before anything is written
+/// \throws FileError, before anything is written, if the folder contains the export of another
+///   study
+/// \throws as require_output_path does, before anything is written
 std::vector<std::filesystem::path> write_export(const std::filesystem::path& folder,
                                                 const ExportMark& mark,
                                                 const std::vector<ExportFile>& files);

@@ -1,5 +1,6 @@
 #include "analysis/exports/export_people.hpp"
 
+#include "analysis/exports/column_meanings.hpp"
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/export_tables.hpp"
 #include "analysis/exports/people_tables.hpp"
@@ -22,36 +23,39 @@ namespace {
 using record::EventKind;
 
 /// The rows with one of the values in a column.
-DataTable rows_with(DataTable table, const std::string& column, const std::set<DataCell>& values) {
+DataTable rows_matching(DataTable table, const std::string& column,
+                        const std::set<DataCell>& values) {
   const auto found = std::ranges::find(table.columns, column);
-  const auto at = static_cast<std::size_t>(found - table.columns.begin());
-  std::erase_if(table.rows, [&](const auto& row) { return !values.contains(row[at]); });
+  const auto index = static_cast<std::size_t>(found - table.columns.begin());
+  std::erase_if(table.rows, [&](const auto& row) { return !values.contains(row[index]); });
   return table;
 }
 
-/// When the sessions of a participant were opened and closed.
-DataTable visits_of(const record::StudyStore& store, const std::vector<record::SessionRow>& rows) {
-  DataTable table{{"participant", "session", "opened_utc", "closed_utc", "simulated"}, {}};
-  std::map<int, std::chrono::nanoseconds> opened;
-  std::map<int, std::chrono::nanoseconds> closed;
+DataTable session_times(const record::StudyStore& store,
+                        const std::vector<record::SessionRow>& rows) {
+  DataTable table{columns_of("sessions.csv"), {}};
+  std::map<int, std::chrono::nanoseconds> opening_times;
+  std::map<int, std::chrono::nanoseconds> closing_times;
   for (const record::Event& event : store.events(0)) {
-    if (event.kind == EventKind::session_opened) opened[record::session_about(event)] = event.at;
-    if (event.kind == EventKind::session_closed) closed[record::session_about(event)] = event.at;
+    if (event.kind == EventKind::session_opened)
+      opening_times[record::session_about(event)] = event.at;
+    if (event.kind == EventKind::session_closed)
+      closing_times[record::session_about(event)] = event.at;
   }
   for (const record::SessionRow& row : rows) {
-    const auto end = closed.find(row.session);
-    table.rows.push_back({row.participant, std::int64_t{row.session},
-                          utc_cell(opened.at(row.session), row.simulated),
-                          end == closed.end() ? DataCell() : utc_cell(end->second, row.simulated),
-                          flag(row.simulated)});
+    const auto end = closing_times.find(row.session);
+    table.rows.push_back(
+        {row.participant, std::int64_t{row.session},
+         utc_cell(opening_times.at(row.session), row.simulated),
+         end == closing_times.end() ? DataCell() : utc_cell(end->second, row.simulated),
+         flag(row.simulated)});
   }
   return table;
 }
 
-/// One row for each consent, with the data given then.
+/// One row per consent, with the personal data from that consent.
 DataTable personal_table(const std::vector<record::PersonalRecord>& consents) {
-  DataTable table{{"participant", "consent_version", "consented_utc", "age", "gender", "contact"},
-                  {}};
+  DataTable table{columns_of("personal.csv"), {}};
   for (const record::PersonalRecord& one : consents) {
     table.rows.push_back({one.participant, one.consent_version, one.consented_utc,
                           one.age ? DataCell(std::int64_t{*one.age}) : DataCell(), one.gender,
@@ -62,32 +66,32 @@ DataTable personal_table(const std::vector<record::PersonalRecord>& consents) {
 
 // The safety record.
 
-constexpr std::array kSafetyKinds = {EventKind::interrupted, EventKind::stopped,
-                                     EventKind::deviated};
+constexpr std::array kSafetyRecordKinds = {EventKind::interrupted, EventKind::stopped,
+                                           EventKind::deviated};
 
 /// A remark without a code is not part of the safety record.
-bool is_of_safety(const Incident& incident) {
+bool is_safety_incident(const Incident& incident) {
   return incident.kind != EventKind::participant_noted || !incident.code.empty();
 }
 
-/// The presentations over which a session's largest force was found.
-enum class ForceOf { none, session, so_far, unknown };
+/// The presentations that a session's largest force covers.
+enum class ForceCoverage { none, session, so_far, unknown };
 
-DataCell force_words(ForceOf source) {
+DataCell coverage_cell(ForceCoverage source) {
   switch (source) {
-    case ForceOf::none:
+    case ForceCoverage::none:
       return "none";
-    case ForceOf::session:
+    case ForceCoverage::session:
       return "session";
-    case ForceOf::so_far:
+    case ForceCoverage::so_far:
       return "so-far";
-    case ForceOf::unknown:
+    case ForceCoverage::unknown:
       break;
   }
   return "not-known";
 }
 
-/// Gathers the two tables.
+/// Collects the tables of safety_sessions.csv and safety_events.csv.
 class SafetyRecord {
  public:
   SafetyRecord(const record::StudyStore& store, const study::StudyKey* key) {
@@ -98,30 +102,28 @@ class SafetyRecord {
     for (const record::SessionRow& row : store.sessions()) sessions_[row.session].row = row;
     store.for_each(EventKind::closed, [&](const record::Event& stored) {
       Session& session = sessions_.at(stored.session);
-      const record::Event event = readable(stored, session.row);
+      const record::Event event = with_open_text(stored, session.row);
       if (!event.sealed.empty()) return;
       session.largest_force_n = record::from_json<record::ClosedBody>(event.body).largest_force_n;
-      session.force_of = session.largest_force_n ? ForceOf::session : ForceOf::none;
+      session.force_coverage =
+          session.largest_force_n ? ForceCoverage::session : ForceCoverage::none;
     });
     for (auto& [number, session] : sessions_) {
-      if (session.force_of == ForceOf::unknown) open_forces(store, session);
+      if (session.force_coverage == ForceCoverage::unknown) open_forces(store, session);
     }
-    store.for_each_of(kSafetyKinds, [&](const record::Event& event) { add(event); });
+    store.for_each_of(kSafetyRecordKinds, [&](const record::Event& event) { add(event); });
     for (const record::Event& event : store.events(0)) add(event);
   }
 
   [[nodiscard]] DataTable sessions() const {
-    DataTable table{{"participant", "session", "state", "excluded", "withdrawn", "erased", "device",
-                     "interruptions", "stops", "deviations", "largest_force_n", "largest_force_of",
-                     "simulated"},
-                    {}};
+    DataTable table{columns_of("safety_sessions.csv"), {}};
     for (const auto& [number, one] : sessions_) {
       table.rows.push_back({one.row.participant, std::int64_t{number},
                             std::string(name_of(one.row.state)), flag(one.row.excluded),
                             flag(one.row.withdrawn), flag(one.row.erased), one.row.device,
                             one.interruptions, one.stops, one.deviations,
                             one.largest_force_n ? DataCell(*one.largest_force_n) : DataCell(),
-                            force_words(one.force_of), flag(one.row.simulated)});
+                            coverage_cell(one.force_coverage), flag(one.row.simulated)});
     }
     return table;
   }
@@ -131,29 +133,29 @@ class SafetyRecord {
   struct Session {
     record::SessionRow row;
     std::optional<double> largest_force_n{};
-    ForceOf force_of = ForceOf::unknown;
+    ForceCoverage force_coverage = ForceCoverage::unknown;
     std::int64_t interruptions = 0;
     std::int64_t stops = 0;
     std::int64_t deviations = 0;
   };
 
   /// Reads the largest force of open sessions from their events, which are sealed under the
-  /// participant's key. Keeps nothing else from them.
+  /// participant's key, and nothing else.
   void open_forces(const record::StudyStore& store, Session& session) const {
-    const auto own = keys_.find(session.row.session);
-    if (own == keys_.end() || !own->second.participant) return;
-    session.force_of = ForceOf::none;
+    const auto keys = keys_.find(session.row.session);
+    if (keys == keys_.end() || !keys->second.participant) return;
+    session.force_coverage = ForceCoverage::none;
     for (const record::Event& stored : store.events(session.row.session)) {
       const bool is_trace = stored.kind == EventKind::trace_stored;
       if (!is_trace && stored.kind != EventKind::interrupted) continue;
-      const record::Event event = whole_event(stored, *own->second.participant).event;
+      const record::Event event = open_event(stored, *keys->second.participant).event;
       const double force_n = is_trace
                                  ? record::from_json<record::TraceBody>(event.body).largest_force_n
                                  : record::from_json<record::InterruptedBody>(event.body)
                                        .largest_force_n.value_or(0.0);
       session.largest_force_n =
           std::max(session.largest_force_n.value_or(0.0), record::in_tenths(force_n));
-      session.force_of = ForceOf::so_far;
+      session.force_coverage = ForceCoverage::so_far;
     }
   }
 
@@ -161,9 +163,10 @@ class SafetyRecord {
     const auto found = sessions_.find(record::session_about(stored));
     if (found == sessions_.end()) return;
     Session& session = found->second;
-    const record::Event event = readable(stored, session.row);
+    const record::Event event = with_open_text(stored, session.row);
     const std::optional<Incident> incident = incident_of(event, session.row);
-    if (!incident || !is_of_safety(*incident) || incident->code == record::kPauseReason) return;
+    if (!incident || !is_safety_incident(*incident) || incident->code == record::kPauseReason)
+      return;
     session.interruptions += event.kind == EventKind::interrupted ? 1 : 0;
     session.stops += event.kind == EventKind::stopped ? 1 : 0;
     session.deviations +=
@@ -175,20 +178,18 @@ class SafetyRecord {
     row.push_back(flag(session.row.simulated));
   }
 
-  /// The event with its text, if the safety key opens it. Interruptions are never opened, because
-  /// their sealed part records what was felt.
-  [[nodiscard]] record::Event readable(const record::Event& event,
-                                       const record::SessionRow& row) const {
-    const auto own = keys_.find(row.session);
-    if (own == keys_.end() || event.kind == EventKind::interrupted) return event;
-    return readable_event(event, row, {.participant = {}, .safety = own->second.safety});
+  /// The event with its text, if the safety key opens it. Interruptions stay sealed, because their
+  /// sealed part records the presented texture.
+  [[nodiscard]] record::Event with_open_text(const record::Event& event,
+                                             const record::SessionRow& row) const {
+    const auto keys = keys_.find(row.session);
+    if (keys == keys_.end() || event.kind == EventKind::interrupted) return event;
+    return readable_event(event, row, {.participant = {}, .safety = keys->second.safety});
   }
 
   std::map<int, record::PersonKeys> keys_;
   std::map<int, Session> sessions_;
-  DataTable events_{{"participant", "session", "event", "kind", "at_s", "at_utc", "trial", "code",
-                     "safety_fault", "device_fault", "text", "simulated"},
-                    {}};
+  DataTable events_{columns_of("safety_events.csv"), {}};
 };
 
 }  // namespace
@@ -214,13 +215,14 @@ std::vector<std::filesystem::path> export_participant(
   const std::optional<Outcomes> outcomes =
       study.outcomes != nullptr ? std::optional(*study.outcomes) : std::nullopt;
   const Collection collection = collection_of(store, outcomes);
-  add("sessions.csv", visits_of(store, rows));
-  add("participants.csv", rows_with(participants_table(store, collection), "participant", id));
-  add("trials.csv", rows_with(trials_table(store, outcomes), "participant", id));
+  add("sessions.csv", session_times(store, rows));
+  add("participants.csv", rows_matching(participants_table(store, collection), "participant", id));
+  add("trials.csv", rows_matching(trials_table(store, outcomes), "participant", id));
   add("deviations.csv",
-      rows_with(deviations_table(collection, commitment.simulated), "participant", id));
-  add("servo.csv", rows_with(servo_table(collection, commitment.simulated), "session", sessions));
-  const DataTable incidents = rows_with(incidents_table(store, outcomes), "participant", id);
+      rows_matching(deviations_table(collection, commitment.simulated), "participant", id));
+  add("servo.csv",
+      rows_matching(servo_table(collection, commitment.simulated), "session", sessions));
+  const DataTable incidents = rows_matching(incidents_table(store, outcomes), "participant", id);
   files.push_back(text_table_file(prefix + "incidents.csv", incidents, outcomes.has_value()));
   if (!consents.empty()) {
     files.push_back(text_table_file(prefix + "personal.csv", personal_table(consents), true));

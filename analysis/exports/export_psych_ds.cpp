@@ -1,5 +1,6 @@
 #include "analysis/exports/export_psych_ds.hpp"
 
+#include "analysis/exports/column_meanings.hpp"
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/study_tables.hpp"
 #include "analysis/exports/trial_tables.hpp"
@@ -20,8 +21,8 @@ Json variable_json(const std::string& column) {
   const ColumnMeaning meaning = meaning_of(column);
   std::string description = meaning.description;
   const char* separator = " (";
-  for (const auto& [value, means] : meaning.levels) {
-    description += fmt::format("{}{}: {}", separator, value, means);
+  for (const auto& [value, value_meaning] : meaning.levels) {
+    description += fmt::format("{}{}: {}", separator, value, value_meaning);
     separator = "; ";
   }
   if (!meaning.levels.empty()) description += ")";
@@ -39,7 +40,7 @@ std::string description_of(const record::StudyCommitment& commitment) {
       commitment.protocol);
 }
 
-/// \param columns  of all data files; each is described once
+/// \param columns  the columns of all data files, without repetitions
 std::string psych_ds_description_json(const DatasetSource& study, const DatasetOptions& options,
                                       const std::vector<std::string>& columns) {
   const record::StudyCommitment& commitment = study.store.commitment();
@@ -61,26 +62,30 @@ std::string psych_ds_description_json(const DatasetSource& study, const DatasetO
 }
 
 std::string psych_ds_readme(const DatasetSource& study) {
-  return "# " + study.store.commitment().study + "\n\n" + about_study(study) +
-         "`data/*_description-trials_data.csv` has one row a trial, its key the columns `session` "
-         "and `trial`; `data/*_description-participants_data.csv` one row a session, its key "
-         "`session`; the others one row for each answer to a question, incident or consent. "
+  return "# " + study.store.commitment().study + "\n\n" + study_readme(study) +
+         "`data/*_description-trials_data.csv` has one row per trial, with the key columns "
+         "`session` "
+         "and `trial`; `data/*_description-participants_data.csv` has one row per session, with "
+         "the "
+         "key column `session`; the others have one row per answer to a question, incident or "
+         "consent. "
          "`dataset_description.json` explains each column.\n";
 }
 
-/// The table of participants.csv without participants whose data were erased. Columns that have the
-/// name of a column of trials.csv but another meaning are renamed, because a variable of a dataset
-/// has one meaning.
-DataTable people_table(const record::StudyStore& store, const Collection& collection) {
+/// The table of participants.csv without participants whose data were erased. Columns that share
+/// their name with a column of trials.csv but have another meaning are renamed, because each
+/// variable of a dataset has one meaning.
+DataTable unerased_participants_table(const record::StudyStore& store,
+                                      const Collection& collection) {
   DataTable table = participants_table(store, collection);
   std::replace(table.columns.begin(), table.columns.end(), std::string("state"),
                std::string("session_state"));
   std::replace(table.columns.begin(), table.columns.end(), std::string("counted"),
                std::string("counted_session"));
   const auto column = std::find(table.columns.begin(), table.columns.end(), "erased");
-  const auto at = static_cast<std::size_t>(column - table.columns.begin());
+  const auto index = static_cast<std::size_t>(column - table.columns.begin());
   std::erase_if(table.rows, [&](const std::vector<DataCell>& row) {
-    return row[at] == DataCell(std::int64_t{1});
+    return row[index] == DataCell(std::int64_t{1});
   });
   return table;
 }
@@ -113,14 +118,15 @@ std::vector<std::filesystem::path> export_psych_ds(const DatasetSource& study,
   };
   add_data("trials", trials_table(study.store, outcomes));
   if (outcomes) add_data("unscored", unscored_table(*outcomes));
-  add_data("participants", people_table(study.store, collection_of(study.store, outcomes)));
-  if (outcomes) add_data("answers", answers_table(*outcomes, options.typed));
-  add_data("incidents", incidents_table(study.store, outcomes, options.typed));
+  add_data("participants",
+           unerased_participants_table(study.store, collection_of(study.store, outcomes)));
+  if (outcomes) add_data("answers", answers_table(*outcomes, options.free_text));
+  add_data("incidents", incidents_table(study.store, outcomes, options.free_text));
   if (!options.consents.empty()) {
     add_data("consents", consents_table(study.store, options.consents));
   }
   files.push_back(text_file(outcomes ? "results/report.json" : "results/quality.json",
-                            report_in_dataset(study, options.typed)));
+                            report_in_dataset(study, options.free_text)));
   files.push_back(text_file("README.md", psych_ds_readme(study)));
   files.push_back(text_file("CHANGES.md", changes_text()));
   files.push_back(text_file(".psychds-ignore", std::string(kExportMark) + "\n"));

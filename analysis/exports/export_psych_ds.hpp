@@ -9,10 +9,10 @@
 
 namespace touchtrial::analysis {
 
-/// Uses only `authors`, `license`, `typed` and `consents` of the options. Before unblinding, the
-/// trials contain no more than those of the CSV export.
+/// Uses only `authors`, `license`, `free_text` and `consents` of the options. Before unblinding,
+/// trials contain no more data than in the CSV export.
 /// \return the files, in the order written
-/// \throws FileError if the folder or a file cannot be written, or the folder holds other files
+/// \throws FileError if the folder or a file cannot be written, or the folder contains other files
 std::vector<std::filesystem::path> export_psych_ds(const DatasetSource& study,
                                                    const DatasetOptions& options,
                                                    const std::filesystem::path& folder);

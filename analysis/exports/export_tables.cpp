@@ -1,5 +1,6 @@
 #include "analysis/exports/export_tables.hpp"
 
+#include "analysis/exports/column_meanings.hpp"
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/people_tables.hpp"
 #include "analysis/exports/study_tables.hpp"
@@ -29,7 +30,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A description of the folder's files, for readers who do not know the program.
+/// export.json, which describes the folder to readers who do not know the program.
 std::string contents_json(const record::StudyStore& store, bool blinded,
                           const std::vector<ExportFile>& files) {
   const record::StudyCommitment& commitment = store.commitment();
@@ -44,15 +45,15 @@ std::string contents_json(const record::StudyStore& store, bool blinded,
   return json_text(contents);
 }
 
-/// The detail of an interruption. Empty for other events, and for interruptions in virtual time.
+/// The detail of an interruption; empty for other events and in virtual time.
 record::InterruptionDetail detail_of(const record::OpenedEvent& opened) {
   if (opened.event.kind != record::EventKind::interrupted || opened.secret.empty()) return {};
   return record::from_json<record::InterruptionDetail>(opened.secret);
 }
 
-record::OpenedEvent whole(const record::Event& event, const record::SessionRow& row,
-                          const record::PersonKeys& keys) {
-  if (!belongs_to_file_chain(event.kind)) return whole_event(event, *keys.participant);
+record::OpenedEvent opened_event(const record::Event& event, const record::SessionRow& row,
+                                 const record::PersonKeys& keys) {
+  if (!belongs_to_file_chain(event.kind)) return open_event(event, *keys.participant);
   return {.event = readable_event(event, row, keys), .secret = {}};
 }
 
@@ -86,10 +87,10 @@ Json rows_json(const DataTable& table) {
 }
 
 std::vector<ExportFile> csv_files(const std::vector<ResultTable>& tables,
-                                  const std::string& start = {}) {
+                                  const std::string& file_start = {}) {
   std::vector<ExportFile> files;
   for (const ResultTable& one : tables) {
-    files.push_back(text_table_file(one.file, one.table, one.has_words, start));
+    files.push_back(text_table_file(one.file, one.table, one.has_free_text, file_start));
   }
   return files;
 }
@@ -98,12 +99,12 @@ std::vector<ExportFile> csv_files(const std::vector<ResultTable>& tables,
 
 std::vector<record::EventKind> kinds_in_events_csv() {
   using record::EventKind;
-  constexpr std::array kElsewhere = {
+  constexpr std::array kInOtherExports = {
       EventKind::opened,    EventKind::presented,    EventKind::first_contact, EventKind::answered,
       EventKind::timed_out, EventKind::trace_stored, EventKind::marked,        EventKind::closed};
   std::vector<EventKind> kinds = {EventKind::participant_noted};
   for (const record::EventKindRow& row : record::event_kinds()) {
-    if (!belongs_to_file_chain(row.kind) && !std::ranges::count(kElsewhere, row.kind)) {
+    if (!belongs_to_file_chain(row.kind) && !std::ranges::count(kInOtherExports, row.kind)) {
       kinds.push_back(row.kind);
     }
   }
@@ -152,20 +153,19 @@ std::vector<std::filesystem::path> export_typed_text(
 
 std::vector<ExportFile> event_files(const record::StudyStore& store, const study::StudyKey& key,
                                     const Outcomes& outcomes, const std::string& prefix) {
-  std::map<int, const record::SessionRow*> shown;
-  for (const SessionOutcome& session : outcomes.sessions) shown[session.row.session] = &session.row;
+  std::map<int, const record::SessionRow*> shown_rows;
+  for (const SessionOutcome& session : outcomes.sessions)
+    shown_rows[session.row.session] = &session.row;
   const std::map<int, record::PersonKeys> keys = person_keys(store, key);
-  DataTable table{{"participant", "session", "event", "kind", "at_s", "at_utc", "body",
-                   "safety_fault", "device_fault", "flight", "simulated"},
-                  {}};
+  DataTable table{columns_of("events.csv"), {}};
   std::vector<ExportFile> files;
   store.for_each_of(kinds_in_events_csv(), [&](const record::Event& stored) {
-    const auto session = shown.find(record::session_about(stored));
-    if (session == shown.end()) return;
+    const auto session = shown_rows.find(record::session_about(stored));
+    if (session == shown_rows.end()) return;
     const record::SessionRow& row = *session->second;
-    const record::PersonKeys& own = keys.at(row.session);
-    if (!own.participant) return;
-    const record::OpenedEvent opened = whole(stored, row, own);
+    const record::PersonKeys& session_keys = keys.at(row.session);
+    if (!session_keys.participant) return;
+    const record::OpenedEvent opened = opened_event(stored, row, session_keys);
     const record::Event& event = opened.event;
     record::InterruptionDetail detail = detail_of(opened);
     const bool in_session = event.session > 0;

@@ -19,7 +19,7 @@ inline constexpr const char* kByteOrderMark = "\xEF\xBB\xBF";
 
 /// The tables that export_csv writes, under the names of their files.
 /// \param outcomes  of this store; nothing before unblinding
-/// \param consents  of the personal data, if they are known
+/// \param consents  from the personal data, if available
 [[nodiscard]] std::vector<ResultTable> exported_tables(
     const record::StudyStore& store, const std::optional<Outcomes>& outcomes,
     const std::vector<record::PersonalRecord>& consents = {});
@@ -27,11 +27,11 @@ inline constexpr const char* kByteOrderMark = "\xEF\xBB\xBF";
 /// Writes trials.csv, participants.csv, deviations.csv, servo.csv, people_tables and study.csv.
 /// With outcomes it also writes the tables of the protocol's analysis (for example,
 /// confusion_<method>.csv for each presented method), unscored_trials.csv and study_file.json. The
-/// last file is export.json, which lists the others and says whether they are simulated. Creates
-/// the folder if necessary; files that no export wrote are kept. Equal studies give equal bytes.
+/// last file, export.json, lists the others and states whether they are simulated. Creates the
+/// folder if necessary; does not touch files of other origin. Equal studies give equal bytes.
 /// \param outcomes  of this store; nothing before unblinding
-/// \param consents  of the personal data, if they are known
-/// \param start  the start of each CSV file; Excel reads UTF-8 only after kByteOrderMark
+/// \param consents  from the personal data, if available
+/// \param start  the start of each CSV file; Excel recognises UTF-8 only after kByteOrderMark
 /// \return the files, in the order written
 /// \throws FileError if the folder or a file cannot be written
 std::vector<std::filesystem::path> export_csv(
@@ -46,9 +46,9 @@ std::vector<std::filesystem::path> export_typed_text(
     const record::StudyStore& store, const Outcomes& outcomes, const std::filesystem::path& folder,
     const std::vector<record::PersonalRecord>& consents);
 
-/// Writes events.csv and one file for each flight record. Contains the sessions whose outcomes may
-/// be shown, except those of participants whose data were erased. Requires unblinding, because the
-/// forces before a fault can reveal textures.
+/// Writes events.csv and one file per flight record, for sessions whose outcomes may be shown and
+/// whose data were not erased. Requires unblinding, because the forces before a fault can reveal
+/// textures.
 /// \param outcomes  of this store, opened with `key`
 /// \return the files, in the order written
 /// \throws VerificationError, naming the event, if a sealed part does not open
@@ -58,7 +58,7 @@ std::vector<std::filesystem::path> export_events(const record::StudyStore& store
                                                  const Outcomes& outcomes,
                                                  const std::filesystem::path& folder);
 
-/// The kinds of events in events.csv: those that no other export lists one by one.
+/// The kinds of events in events.csv: all kinds that no other export lists individually.
 [[nodiscard]] std::vector<record::EventKind> kinds_in_events_csv();
 
 /// The files that export_events writes.
@@ -71,7 +71,7 @@ std::vector<std::filesystem::path> export_events(const record::StudyStore& store
 
 /// Writes study.json: the report (before unblinding, the quality report) and the tables of the CSV
 /// export, with their columns as keys. A missing value is null; times are in seconds. Arguments and
-/// errors are those of export_csv.
+/// errors: see export_csv.
 /// \return the file
 std::filesystem::path export_json(const record::StudyStore& store,
                                   const std::optional<Outcomes>& outcomes,

@@ -1,5 +1,6 @@
 #include "analysis/exports/people_tables.hpp"
 
+#include "analysis/exports/column_meanings.hpp"
 #include "core/named.hpp"
 #include "record/marks.hpp"
 
@@ -17,7 +18,7 @@ const char* name_of_kind(study::QuestionKind kind) {
   return name_in(kNames, kind).data();
 }
 
-/// The kind of an answer; if its question is unknown, only whether it was typed.
+/// The kind of an answer; if its question is unknown, only whether it is a text.
 DataCell kind_cell(const QuestionAnswer& answer, const study::Question* question) {
   if (question != nullptr) return std::string(name_of_kind(question->kind));
   return answer.number ? DataCell() : DataCell(std::string("text"));
@@ -30,14 +31,12 @@ DataCell cell_of(const std::optional<Value>& value) {
 
 }  // namespace
 
-DataTable answers_table(const Outcomes& outcomes, Typed typed) {
-  DataTable table{{"participant", "session", "questionnaire", "question", "question_kind",
-                   "wording", "answer", "words", "simulated"},
-                  {}};
+DataTable answers_table(const Outcomes& outcomes, FreeText free_text) {
+  DataTable table{columns_of("answers.csv"), {}};
   const std::string& language = outcomes.design.session.language;
   for (const QuestionAnswer& answer : outcomes.answers) {
-    if (typed == Typed::left_out && may_name_somebody(answer)) continue;
-    const study::Question* const question = question_of(outcomes.asked, answer);
+    if (free_text == FreeText::left_out && may_identify_person(answer)) continue;
+    const study::Question* const question = question_of(outcomes.questionnaires, answer);
     table.rows.push_back({answer.participant, std::int64_t{answer.session}, answer.questionnaire,
                           answer.question, kind_cell(answer, question),
                           question == nullptr ? "" : in_language(question->text, language),
@@ -57,12 +56,10 @@ std::vector<DataCell> incident_cells(const Incident& incident) {
 }
 
 DataTable incidents_table(const record::StudyStore& store, const std::optional<Outcomes>& outcomes,
-                          Typed typed) {
-  DataTable table{{"participant", "session", "event", "incident", "at_s", "trial", "code",
-                   "safety_fault", "device_fault", "text", "simulated"},
-                  {}};
+                          FreeText free_text) {
+  DataTable table{columns_of("incidents.csv"), {}};
   for (Incident& incident : outcomes ? std::vector(outcomes->incidents) : load_incidents(store)) {
-    if (typed == Typed::left_out) incident.text.clear();
+    if (free_text == FreeText::left_out) incident.text.clear();
     table.rows.push_back(incident_cells(incident));
     table.rows.back().push_back(flag(store.commitment().simulated));
   }
@@ -70,9 +67,7 @@ DataTable incidents_table(const record::StudyStore& store, const std::optional<O
 }
 
 DataTable marks_table(const Outcomes& outcomes) {
-  DataTable table{{"participant", "session", "trial", "mark", "code", "at_s", "latency_s", "lsl_s",
-                   "lsl_uncertainty_s", "simulated"},
-                  {}};
+  DataTable table{columns_of("marks.csv"), {}};
   for (const InstrumentMark& mark : outcomes.marks) {
     table.rows.push_back({mark.participant, std::int64_t{mark.session},
                           mark.trial > 0 ? DataCell(std::int64_t{mark.trial}) : DataCell(),
@@ -86,14 +81,14 @@ DataTable marks_table(const Outcomes& outcomes) {
 
 DataTable consents_table(const record::StudyStore& store,
                          const std::vector<record::PersonalRecord>& consents) {
-  std::set<std::string> known;
+  std::set<std::string> participants;
   for (const record::SessionRow& row : store.sessions()) {
-    if (!row.erased) known.insert(row.participant);
+    if (!row.erased) participants.insert(row.participant);
   }
-  DataTable table{{"participant", "consent", "consent_version", "simulated"}, {}};
+  DataTable table{columns_of("consents.csv"), {}};
   std::map<std::string, std::int64_t> numbers;
   for (const record::PersonalRecord& one : consents) {
-    if (!known.contains(one.participant)) continue;
+    if (!participants.contains(one.participant)) continue;
     table.rows.push_back({one.participant, ++numbers[one.participant], one.consent_version,
                           flag(store.commitment().simulated)});
   }

@@ -17,30 +17,32 @@
 namespace touchtrial::analysis {
 
 /// Whether a table may contain typed text, which may name people.
-enum class Typed { shown, left_out };
+enum class FreeText { shown, left_out };
 
-/// One row for each answer, with the wording of its question and the text of the chosen option
-/// where they are known.
-/// \param typed  left_out: without free-text answers and ages
-[[nodiscard]] DataTable answers_table(const Outcomes& outcomes, Typed typed = Typed::shown);
+/// One row per answer, with the wording of its question and the text of the chosen option if they
+/// are known.
+/// \param free_text  left_out: without free-text answers and ages
+[[nodiscard]] DataTable answers_table(const Outcomes& outcomes,
+                                      FreeText free_text = FreeText::shown);
 
-/// participant, session, event, kind, at_s, trial, code, safety_fault, device_fault, text.
+/// The cells participant, session, event, kind, at_s, trial, code, safety_fault, device_fault and
+/// text.
 [[nodiscard]] std::vector<DataCell> incident_cells(const Incident& incident);
 
-/// One row for each incident. Without outcomes, times and texts are sealed, and their cells empty.
-/// \param typed  left_out: without texts
+/// One row per incident. Without outcomes, times and texts are sealed and their cells empty.
+/// \param free_text  left_out: without texts
 [[nodiscard]] DataTable incidents_table(const record::StudyStore& store,
                                         const std::optional<Outcomes>& outcomes,
-                                        Typed typed = Typed::shown);
+                                        FreeText free_text = FreeText::shown);
 
-/// One row for each consent of a participant who has a session and is not erased: the version that
-/// was signed, and the number of earlier consents. No date or other personal data.
+/// One row per consent of participants with sessions whose data were not erased: the number of the
+/// consent and the signed version, but no date or other personal data.
 [[nodiscard]] DataTable consents_table(const record::StudyStore& store,
                                        const std::vector<record::PersonalRecord>& consents);
 
 /// A table as CSV.
 /// \param has_words  it contains people's words, so only the owner may read the file
-/// \param start  of the file, before the table
+/// \param start  precedes the table
 [[nodiscard]] ExportFile text_table_file(const std::string& name, const DataTable& table,
                                          bool has_words, const std::string& start = {});
 

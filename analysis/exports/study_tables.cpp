@@ -1,5 +1,6 @@
 #include "analysis/exports/study_tables.hpp"
 
+#include "analysis/exports/column_meanings.hpp"
 #include "analysis/outcomes/collection.hpp"
 #include "core/strict_json.hpp"
 #include "core/utc.hpp"
@@ -23,13 +24,13 @@ struct RecordColumn {
 };
 
 template <int PracticeRecord::*kNumber>
-DataCell practised(const SessionRecord& record) {
+DataCell practice_number(const SessionRecord& record) {
   if (!record.practice) return std::monostate{};
   return std::int64_t{(*record.practice).*kNumber};
 }
 
 template <int SessionRecord::*kNumber>
-DataCell counted_in(const SessionRecord& record) {
+DataCell record_number(const SessionRecord& record) {
   return std::int64_t{record.*kNumber};
 }
 
@@ -45,7 +46,6 @@ DataCell station_number(const SessionRecord& record) {
   return (*record.station).*kNumber;
 }
 
-/// Three numbers with blanks between them.
 template <std::array<double, 3> record::StationRecord::*kAxes>
 DataCell station_axes(const SessionRecord& record) {
   if (!record.station) return std::monostate{};
@@ -53,29 +53,25 @@ DataCell station_axes(const SessionRecord& record) {
   return number_text(axes[0]) + ' ' + number_text(axes[1]) + ' ' + number_text(axes[2]);
 }
 
-/// How a session was collected. Deviations have a table of their own, because a session may have
+/// How a session was collected. Deviations are in a separate table, because a session may have
 /// several.
 constexpr RecordColumn kRecordColumns[] = {
-    {"practice_rounds", practised<&PracticeRecord::rounds>},
-    {"practice_presentations", practised<&PracticeRecord::presentations>},
+    {"practice_rounds", practice_number<&PracticeRecord::rounds>},
+    {"practice_presentations", practice_number<&PracticeRecord::presentations>},
     {"practice_correct",
      [](const SessionRecord& record) -> DataCell {
        if (!record.practice || !record.practice->correct) return std::monostate{};
        return std::int64_t{*record.practice->correct};
      },
      true},
-    {"order_block",
-     [](const SessionRecord& record) -> DataCell {
-       if (!record.order_block) return std::monostate{};
-       return std::int64_t{*record.order_block};
-     },
+    {"order_block", [](const SessionRecord& record) { return optional_cell(record.order_block); },
      true},
     {"practice_passed",
      [](const SessionRecord& record) -> DataCell {
        if (!record.practice) return std::monostate{};
        return flag(record.practice->passed);
      }},
-    {"resumed", counted_in<&SessionRecord::resumed>},
+    {"resumed", record_number<&SessionRecord::resumed>},
     {"stop_reason", [](const SessionRecord& record) -> DataCell { return record.stop_reason; }},
     {"exclusion_reason",
      [](const SessionRecord& record) -> DataCell { return exclusion_words(record); }},
@@ -84,10 +80,7 @@ constexpr RecordColumn kRecordColumns[] = {
     {"withdrawal_reason",
      [](const SessionRecord& record) -> DataCell { return record.withdrawal_reason; }},
     {"largest_force_n",
-     [](const SessionRecord& record) -> DataCell {
-       if (!record.largest_force_n) return std::monostate{};
-       return *record.largest_force_n;
-     }},
+     [](const SessionRecord& record) { return optional_cell(record.largest_force_n); }},
     {"station",
      [](const SessionRecord& record) -> DataCell {
        if (record.row.station == 0) return std::monostate{};
@@ -107,25 +100,17 @@ constexpr RecordColumn kRecordColumns[] = {
        if (!record.station) return std::monostate{};
        return flag(record.station->visual);
      }},
-    {"interruptions", counted_in<&SessionRecord::interruptions>},
-    {"pauses", counted_in<&SessionRecord::pauses>},
-    {"notes", counted_in<&SessionRecord::notes>},
-    {"answers",
-     [](const SessionRecord& record) -> DataCell {
-       if (!record.answers) return std::monostate{};
-       return std::int64_t{*record.answers};
-     }},
+    {"interruptions", record_number<&SessionRecord::interruptions>},
+    {"pauses", record_number<&SessionRecord::pauses>},
+    {"notes", record_number<&SessionRecord::notes>},
+    {"answers", [](const SessionRecord& record) { return optional_cell(record.answers); }},
     {"one_key",
      [](const SessionRecord& record) -> DataCell {
        if (!record.answers) return std::monostate{};
        return flag(record.one_key);
      }},
     {"handedness_score",
-     [](const SessionRecord& record) -> DataCell {
-       if (!record.handedness_score) return std::monostate{};
-       return *record.handedness_score;
-     },
-     true},
+     [](const SessionRecord& record) { return optional_cell(record.handedness_score); }, true},
 };
 
 void add_record(std::vector<DataCell>& row, const SessionRecord& record, bool unblinded) {
@@ -140,17 +125,17 @@ void add_record(std::vector<DataCell>& row, const SessionRecord& record, bool un
 }
 
 /// The decisions about a session after a look at its outcomes, separated by "; ".
-std::string decided_after_look(const LookRecord& looked, int session) {
-  std::vector<std::string> decided;
-  if (looked.excluded_afterwards.contains(session)) decided.emplace_back("excluded");
-  if (looked.replaced_afterwards.contains(session)) decided.emplace_back("replaced");
-  if (looked.erased_afterwards.contains(session)) decided.emplace_back("erased");
-  return fmt::format("{}", fmt::join(decided, "; "));
+std::string decisions_after_look(const LookRecord& looks, int session) {
+  std::vector<std::string> decisions;
+  if (looks.excluded_afterwards.contains(session)) decisions.emplace_back("excluded");
+  if (looks.replaced_afterwards.contains(session)) decisions.emplace_back("replaced");
+  if (looks.erased_afterwards.contains(session)) decisions.emplace_back("erased");
+  return fmt::format("{}", fmt::join(decisions, "; "));
 }
 
 std::vector<DataCell> session_cells(const record::SessionRow& row, const record::StudyState& state,
-                                    const LookRecord& looked, const std::set<int>& counted) {
-  const bool shown = !state.unblinded || state.reports(row.session);
+                                    const LookRecord& looks, const std::set<int>& counted) {
+  const bool is_shown = !state.unblinded || state.reports(row.session);
   return {row.participant,
           std::int64_t{row.session},
           std::int64_t{row.enrolment},
@@ -163,8 +148,8 @@ std::vector<DataCell> session_cells(const record::SessionRow& row, const record:
           flag(counted.contains(row.session)),
           row.device,
           row.replaced_by,
-          decided_after_look(looked, row.session),
-          flag(shown)};
+          decisions_after_look(looks, row.session),
+          flag(is_shown)};
 }
 
 void add_prescription(DataTable& study, const Prescription& prescription) {
@@ -222,26 +207,30 @@ DataTable study_table(const record::StudyStore& store, const std::optional<Outco
   return table;
 }
 
+std::vector<std::string> participant_columns(bool unblinded) {
+  std::vector<std::string> columns{
+      "participant", "session",   "enrolment", "state",  "excluded",    "withdrawn",  "erased",
+      "pilot",       "simulated", "counted",   "device", "replaced_by", "after_look", "shown"};
+  for (const RecordColumn& column : kRecordColumns) {
+    if (unblinded || !column.after_unblinding) columns.emplace_back(column.name);
+  }
+  return columns;
+}
+
 DataTable participants_table(const record::StudyStore& store, const Collection& collection) {
-  DataTable table{
-      {"participant", "session", "enrolment", "state", "excluded", "withdrawn", "erased", "pilot",
-       "simulated", "counted", "device", "replaced_by", "after_look", "shown"},
-      {}};
   std::map<int, const SessionRecord*> records;
   for (const SessionRecord& record : collection.sessions) records[record.row.session] = &record;
   const record::StudyState state = store.state();
-  const LookRecord looked = look_record(store, {});
-  for (const RecordColumn& column : kRecordColumns) {
-    if (state.unblinded || !column.after_unblinding) table.columns.emplace_back(column.name);
-  }
+  const LookRecord looks = look_record(store, {});
+  DataTable table{participant_columns(state.unblinded), {}};
   const std::vector<record::SessionRow> rows = store.sessions();
-  std::vector<record::SessionRow> shown;
-  std::ranges::copy_if(rows, std::back_inserter(shown), [&](const record::SessionRow& row) {
+  std::vector<record::SessionRow> shown_rows;
+  std::ranges::copy_if(rows, std::back_inserter(shown_rows), [&](const record::SessionRow& row) {
     return !state.unblinded || state.reports(row.session);
   });
-  const std::set<int> counted = counted_sessions(shown, store.commitment());
+  const std::set<int> counted = counted_sessions(shown_rows, store.commitment());
   for (const record::SessionRow& row : rows) {
-    table.rows.push_back(session_cells(row, state, looked, counted));
+    table.rows.push_back(session_cells(row, state, looks, counted));
     add_record(table.rows.back(), *records.at(row.session), state.unblinded);
   }
   add_visit_and_group(table, collection);
@@ -258,18 +247,18 @@ void add_visit_and_group(DataTable& table, const Collection& collection) {
   for (const SessionRecord& record : collection.sessions) records[record.row.session] = &record;
   const auto column = std::ranges::find(table.columns, "session") - table.columns.begin();
   for (std::vector<DataCell>& row : table.rows) {
-    const SessionRecord& own =
+    const SessionRecord& record =
         *records.at(std::get<std::int64_t>(row[static_cast<std::size_t>(column)]));
     const auto add = [&](DataCell cell) {
-      row.push_back(own.row.erased ? DataCell() : std::move(cell));
+      row.push_back(record.row.erased ? DataCell() : std::move(cell));
     };
-    if (has_visits) add(std::int64_t{own.row.visit});
-    if (has_groups) add(own.group.empty() ? DataCell() : DataCell(own.group));
+    if (has_visits) add(std::int64_t{record.row.visit});
+    if (has_groups) add(record.group.empty() ? DataCell() : DataCell(record.group));
   }
 }
 
 DataTable deviations_table(const Collection& collection, bool simulated) {
-  DataTable table{{"participant", "session", "code", "text", "simulated"}, {}};
+  DataTable table{columns_of("deviations.csv"), {}};
   for (const SessionRecord& record : collection.sessions) {
     for (const auto& [code, text] : record.deviations) {
       table.rows.push_back(
@@ -280,10 +269,7 @@ DataTable deviations_table(const Collection& collection, bool simulated) {
 }
 
 DataTable servo_table(const Collection& collection, bool simulated) {
-  DataTable table{
-      {"session", "trial", "rate_hz", "lateness_p50_us", "lateness_p99_us", "lateness_p999_us",
-       "lateness_worst_us", "lost", "held", "overruns", "simulated"},
-      {}};
+  DataTable table{columns_of("servo.csv"), {}};
   for (const auto& [session, trial, health, overruns] : collection.servo_trials) {
     table.rows.push_back({std::int64_t{session}, std::int64_t{trial}, health.rate_hz,
                           health.lateness_p50_us, health.lateness_p99_us, health.lateness_p999_us,
@@ -294,8 +280,7 @@ DataTable servo_table(const Collection& collection, bool simulated) {
 }
 
 DataTable looks_table(const Outcomes& outcomes) {
-  DataTable table{{"at", "kind", "participants", "participant", "station", "reason", "simulated"},
-                  {}};
+  DataTable table{columns_of("looks.csv"), {}};
   for (const Look& look : outcomes.look_record.looks) {
     table.rows.push_back({utc_text(look.at), name_of(look.kind), std::int64_t{look.participants},
                           look.participant, std::int64_t{look.station}, look.reason,

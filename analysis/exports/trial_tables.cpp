@@ -19,7 +19,7 @@ DataCell response_of(const TrialView& trial) {
   return trial.study->choices[*trial.outcome->response];
 }
 
-/// Empty if the trial did not end, so that the column's mean is an accuracy, and if no response is
+/// Empty if the trial did not end, so that the column's mean is an accuracy, or if no response is
 /// right.
 DataCell correctness_of(const TrialView& trial) {
   if (!trial.outcome->right) return std::monostate{};
@@ -30,18 +30,19 @@ DataCell correctness_of(const TrialView& trial) {
   return flag(trial.outcome->correct());
 }
 
-/// Whether the trial has several planes and belongs to a track, which gives its class and method.
-bool is_of_track(const TrialView& trial) {
+/// Whether the trial has several planes and belongs to a track, which determines its class and
+/// method.
+bool belongs_to_track(const TrialView& trial) {
   return trial.outcome->chosen && trial.outcome->chosen->track > 0;
 }
 
 DataCell method_of(const TrialView& trial) {
-  if (!has_stimulus(trial) && !is_of_track(trial)) return std::monostate{};
+  if (!has_stimulus(trial) && !belongs_to_track(trial)) return std::monostate{};
   return trial.study->methods[trial.outcome->stimulus.method];
 }
 
 DataCell class_of(const TrialView& trial) {
-  if (!has_stimulus(trial) && !is_of_track(trial)) return std::monostate{};
+  if (!has_stimulus(trial) && !belongs_to_track(trial)) return std::monostate{};
   return trial.study->classes[trial.outcome->stimulus.class_index];
 }
 
@@ -64,7 +65,7 @@ DataCell state_of(const TrialView& trial) {
 }
 
 template <double record::TrialMeasures::*kMeasure>
-DataCell measured(const TrialView& trial) {
+DataCell measure_cell(const TrialView& trial) {
   if (trial.outcome == nullptr || !trial.outcome->measures) return std::monostate{};
   return (*trial.outcome->measures).*kMeasure;
 }
@@ -79,21 +80,21 @@ DataCell limited_ticks_of(const TrialView& trial) {
   return *trial.outcome->measures->limited_ticks;
 }
 
-/// Whether the hand was within one of its windows; missing without a trace.
+/// Whether the hand stayed within one of its windows; missing without a trace.
 template <bool record::HandWindows::*kWindow>
-DataCell within(const TrialView& trial) {
+DataCell window_cell(const TrialView& trial) {
   if (!trial.row.has_trace()) return std::monostate{};
   return flag(trial.row.hand.*kWindow);
 }
 
-/// The verdict of the validity rule; missing without a trace. Before unblinding, the verdict of the
-/// rule's clear part.
+/// The verdict of the validity rule; missing without a trace. Before unblinding, only the rule's
+/// unencrypted part.
 DataCell validity_of(const TrialView& trial) {
   if (!trial.row.has_trace()) return std::monostate{};
   return flag(trial.outcome != nullptr ? trial.outcome->valid() : trial.row.valid);
 }
 
-const std::vector<TrialColumn>& columns_of_every_protocol() {
+const std::vector<TrialColumn>& common_trial_columns() {
   static const std::vector<TrialColumn> columns{
       {"participant", false, [](const TrialView& t) -> DataCell { return t.participant; }},
       {"session", false,
@@ -105,14 +106,15 @@ const std::vector<TrialColumn>& columns_of_every_protocol() {
       {"exemplar", true, exemplar_of},
       {"response", true, response_of},
       {"correct", true, correctness_of},
-      {"confidence", true, [](const TrialView& t) { return or_nothing(t.row.confidence); }},
+      {"confidence", true, [](const TrialView& t) { return optional_cell(t.row.confidence); }},
       {"reaction_time_s", true,
-       [](const TrialView& t) { return or_nothing(t.row.reaction_time()); }},
-      {"from_contact_s", true, [](const TrialView& t) { return or_nothing(t.row.from_contact()); }},
-      {"contact_s", false, measured<&record::TrialMeasures::contact_s>},
-      {"path_mm", false, measured<&record::TrialMeasures::path_mm>},
-      {"force_rms_n", false, measured<&record::TrialMeasures::force_rms_n>},
-      {"saturated_share", false, measured<&record::TrialMeasures::saturated_share>},
+       [](const TrialView& t) { return optional_cell(t.row.reaction_time()); }},
+      {"from_contact_s", true,
+       [](const TrialView& t) { return optional_cell(t.row.from_contact()); }},
+      {"contact_s", false, measure_cell<&record::TrialMeasures::contact_s>},
+      {"path_mm", false, measure_cell<&record::TrialMeasures::path_mm>},
+      {"force_rms_n", false, measure_cell<&record::TrialMeasures::force_rms_n>},
+      {"saturated_share", false, measure_cell<&record::TrialMeasures::saturated_share>},
       {"valid", false, validity_of},
       {"presented_at_s", true, [](const TrialView& t) -> DataCell { return t.row.presented_at; }},
       {"simulated", false, [](const TrialView& t) { return flag(t.simulated); }},
@@ -126,14 +128,15 @@ const std::vector<TrialColumn>& columns_of_every_protocol() {
          if (!t.row.contact_at) return std::monostate{};
          return *t.row.contact_at - t.row.presented_at;
        }},
-      {"position", true, [](const TrialView& t) { return or_nothing(position_of(t.row.answer)); }},
+      {"position", true,
+       [](const TrialView& t) { return optional_cell(position_of(t.row.answer)); }},
       {"first_position", true,
-       [](const TrialView& t) { return or_nothing(first_position_of(t.row.answer)); }},
+       [](const TrialView& t) { return optional_cell(first_position_of(t.row.answer)); }},
       {"valid_in_clear", false, [](const TrialView& t) { return flag(t.row.valid); }},
-      {"contact_ok", false, within<&record::HandWindows::contact>},
-      {"path_ok", false, within<&record::HandWindows::path>},
-      {"force_ok", false, within<&record::HandWindows::force>},
-      {"speed_ok", false, within<&record::HandWindows::speed>},
+      {"contact_ok", false, window_cell<&record::HandWindows::contact>},
+      {"path_ok", false, window_cell<&record::HandWindows::path>},
+      {"force_ok", false, window_cell<&record::HandWindows::force>},
+      {"speed_ok", false, window_cell<&record::HandWindows::speed>},
       {"within_limits", true, limits_of},
       {"limited_ticks", true, limited_ticks_of},
       {"samples", true, [](const TrialView& t) -> DataCell { return t.row.samples; }},
@@ -163,19 +166,19 @@ DataTable trials_header(const std::vector<TrialColumn>& columns, bool unblinded)
 DataTable blinded_trials(const record::StudyStore& store) {
   const std::vector<TrialColumn> columns = trial_columns_of(nullptr);
   DataTable table = trials_header(columns, false);
-  std::map<int, record::SessionRow> shown;
+  std::map<int, record::SessionRow> shown_sessions;
   for (const record::SessionRow& session : store.sessions()) {
-    if (!session.erased) shown[session.session] = session;
+    if (!session.erased) shown_sessions[session.session] = session;
   }
   for (const record::TrialRow& row : store.trials()) {
-    const auto session = shown.find(row.session);
-    if (session == shown.end()) continue;
+    const auto session = shown_sessions.find(row.session);
+    if (session == shown_sessions.end()) continue;
     add_trial(table, columns, {session->second.participant, row, session->second.simulated});
   }
   return table;
 }
 
-DataTable trials_if_scored(bool scored, const Outcomes& outcomes) {
+DataTable trials_by_scoring(bool scored, const Outcomes& outcomes) {
   const std::vector<TrialColumn> columns = trial_columns_of(&outcomes);
   DataTable table = trials_header(columns, true);
   for (const TrialOutcome& trial : outcomes.trials) {
@@ -190,11 +193,11 @@ DataTable trials_if_scored(bool scored, const Outcomes& outcomes) {
 }  // namespace
 
 std::span<const TrialColumn> trial_columns() {
-  return columns_of_every_protocol();
+  return common_trial_columns();
 }
 
 std::vector<TrialColumn> trial_columns_of(const Outcomes* outcomes) {
-  std::vector<TrialColumn> columns = columns_of_every_protocol();
+  std::vector<TrialColumn> columns = common_trial_columns();
   if (outcomes == nullptr) return columns;
   if (outcomes->design.trials.rove_db > 0.0) columns.push_back({"gain_db", true, gain_of});
   std::ranges::move(analysis_of(outcomes->design).trial_columns(*outcomes),
@@ -207,16 +210,16 @@ const std::string& image_of(const Outcomes& study, const TrialOutcome& trial) {
 }
 
 DataTable trials_table(const record::StudyStore& store, const std::optional<Outcomes>& outcomes) {
-  if (outcomes) return trials_if_scored(true, *outcomes);
+  if (outcomes) return trials_by_scoring(true, *outcomes);
   DataTable table = blinded_trials(store);
   const Prescription study = prescription_from_json(store.commitment().configuration);
-  const bool has_more = study.visits > 1 || !study.groups.empty();
-  if (has_more) add_visit_and_group(table, load_collection(store));
+  const bool has_extra_columns = study.visits > 1 || !study.groups.empty();
+  if (has_extra_columns) add_visit_and_group(table, load_collection(store));
   return table;
 }
 
 DataTable unscored_table(const Outcomes& outcomes) {
-  return trials_if_scored(false, outcomes);
+  return trials_by_scoring(false, outcomes);
 }
 
 }  // namespace touchtrial::analysis

@@ -13,7 +13,7 @@
 
 namespace touchtrial::analysis {
 
-/// The source of a cell. `study` and `outcome` are null before unblinding.
+/// The data behind a trial's cells. `study` and `outcome` are null before unblinding.
 struct TrialView {
   const std::string& participant;
   const record::TrialRow& row;
@@ -28,7 +28,7 @@ struct TrialColumn {
   std::function<DataCell(const TrialView&)> value;
 };
 
-/// The columns of all protocols, in the order of trials.csv.
+/// The columns common to all protocols, in the order of trials.csv.
 [[nodiscard]] std::span<const TrialColumn> trial_columns();
 
 /// trial_columns(), "gain_db" if gains are roved, and the columns of the protocol's analysis.
@@ -39,17 +39,17 @@ struct TrialColumn {
 /// The file name of a trial's image, as in the study.
 [[nodiscard]] const std::string& image_of(const Outcomes& study, const TrialOutcome& trial);
 
-/// One row for each trial, ordered by session and trial, without participants whose data were
-/// erased. With outcomes, the rows are the scored trials, whether or not their session counts (see
-/// participants_table). Without outcomes, the rows are all presented trials, because it is sealed
-/// which of them were practice or lead-ins. The table then has no columns about stimuli, answers
-/// and times, and the columns that could reveal stimuli (contact_s, path_mm, force_rms_n,
-/// saturated_share) are empty. The last columns are those of add_visit_and_group.
+/// One row per trial, ordered by session and trial, without participants whose data were erased.
+/// With outcomes, the rows are the scored trials, whether their session counts or not (see
+/// participants_table). Without outcomes, the rows are all presented trials, because practice and
+/// lead-ins cannot be distinguished. The table then has no columns about stimuli, answers and
+/// times, and the columns that could reveal stimuli (contact_s, path_mm, force_rms_n,
+/// saturated_share) are empty. add_visit_and_group adds the last columns.
 [[nodiscard]] DataTable trials_table(const record::StudyStore& store,
                                      const std::optional<Outcomes>& outcomes);
 
-/// The trials that are not scored: lead-ins and catch trials, with the columns of trials_table.
-/// With them, the order of all presentations is known. A catch trial has neither class nor method.
+/// The unscored trials, lead-ins and catch trials, with the columns of trials_table. Both tables
+/// together give the order of all presentations. A catch trial has neither class nor method.
 [[nodiscard]] DataTable unscored_table(const Outcomes& outcomes);
 
 }  // namespace touchtrial::analysis

@@ -11,7 +11,6 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// A row of the co-occurrence table.
 struct Statistic {
   const char* name;
   double engine::GlcmStatistics::*member;
@@ -25,8 +24,9 @@ constexpr std::array<Statistic, 5> kStatistics = {
      {"contrast", &engine::GlcmStatistics::contrast, 2},
      {"correlation", &engine::GlcmStatistics::correlation, 3}}};
 
-constexpr const char* kWhatEntropyIs =
-    "The paper's Table 1 prints, as \"Entropy\", what is called energy here: the square root of "
+constexpr const char* kEntropyNote =
+    "The row \"Entropy\" of the paper's Table 1 shows what is called energy here: the square root "
+    "of "
     "the angular second moment (ASM). The entropy of the co-occurrence matrix, in nats, is in the "
     "rows below it.";
 
@@ -54,11 +54,11 @@ std::string glcm_text(const engine::Evaluation& evaluation) {
 
 std::string orders_text(const engine::Evaluation& evaluation) {
   TextTable table({"fixed order", "entropy, nats", "MS-SSIM", "MS-SSIM (Wang)"});
-  for (const engine::OrderFigures& one : evaluation.orders) {
+  for (const engine::OrderEvaluation& one : evaluation.orders) {
     table.add({fmt::format("{:.2f}", one.order), fmt::format("{:.4f}", one.entropy),
                fmt::format("{:.5f}", one.ms_ssim), fmt::format("{:.5f}", one.ms_ssim_wang)});
   }
-  const engine::OrderFigures& closest = engine::closest_order(evaluation);
+  const engine::OrderEvaluation& closest = engine::closest_order(evaluation);
   return "\n" + table.text() + "\n" +
          wrapped("  ", fmt::format("Closest to the adaptive texture is the fixed order {:.2f}: "
                                    "MS-SSIM {:.5f} (Wang {:.5f}) where 1 is identity, entropy "
@@ -81,13 +81,13 @@ std::string image_text(const EvaluatedImage& image) {
 
 using Json = nlohmann::ordered_json;
 
-Json picture_json(const engine::PictureFigures& picture) {
+Json picture_json(const engine::PictureEvaluation& picture) {
   return {{"entropy", picture.entropy}, {"glcm", glcm_json(picture.glcm)}};
 }
 
-Json orders_json(const std::vector<engine::OrderFigures>& orders) {
+Json orders_json(const std::vector<engine::OrderEvaluation>& orders) {
   Json list = Json::array();
-  for (const engine::OrderFigures& one : orders) {
+  for (const engine::OrderEvaluation& one : orders) {
     list.push_back({{"order", one.order},
                     {"entropy", one.entropy},
                     {"ms_ssim", one.ms_ssim},
@@ -109,7 +109,7 @@ Json image_json(const EvaluatedImage& image) {
 std::string evaluation_text(std::span<const EvaluatedImage> images) {
   std::string text;
   for (const EvaluatedImage& image : images) text += image_text(image);
-  return text + wrapped("", kWhatEntropyIs);
+  return text + wrapped("", kEntropyNote);
 }
 
 std::string evaluation_json(std::span<const EvaluatedImage> images) {

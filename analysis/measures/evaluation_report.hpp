@@ -9,7 +9,7 @@
 namespace touchtrial::analysis {
 
 struct EvaluatedImage {
-  std::string image;  ///< its name in reports
+  std::string image;  ///< name in reports
   engine::Evaluation evaluation;
 };
 

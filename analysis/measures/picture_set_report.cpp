@@ -26,25 +26,26 @@ std::string pictures_text(const MeasuredPictures& measured) {
          fmt::format("{:.3f}", p.texture.correlation), fmt::format("{:.1f}", 1e3 * p.force_rms_n),
          share_figure(p.renderable_share)});
   }
-  constexpr std::size_t kOneBlock = 140;
-  return table.text(kOneBlock);
+  constexpr std::size_t kTableWidth = 140;
+  return table.text(kTableWidth);
 }
 
 std::string pair_mean(const PairMean& mean) {
   return mean.pairs == 0 ? "-" : fmt::format("{:.4f} ({})", mean.mean, mean.pairs);
 }
 
-std::string likeness_text(const MeasuredPictures& measured) {
+std::string similarity_text(const MeasuredPictures& measured) {
   TextTable table(
       {"MS-SSIM, mean (pairs)", "original within", "between", "texture within", "between"});
   for (const SetMeasures& set : measured.sets) {
-    if (!set.likeness) {
+    if (!set.similarity) {
       table.add({set.set, "too small", "", "", ""});
       continue;
     }
-    table.add({set.set, pair_mean(set.likeness->original_within),
-               pair_mean(set.likeness->original_between), pair_mean(set.likeness->texture_within),
-               pair_mean(set.likeness->texture_between)});
+    table.add({set.set, pair_mean(set.similarity->original_within),
+               pair_mean(set.similarity->original_between),
+               pair_mean(set.similarity->texture_within),
+               pair_mean(set.similarity->texture_between)});
   }
   return table.text();
 }
@@ -68,31 +69,31 @@ Json picture_json(const PictureMeasures& picture) {
           {"renderable_share", picture.renderable_share}};
 }
 
-Json likeness_json(const Likeness& likeness) {
+Json similarity_json(const Similarity& similarity) {
   return {{"original",
-           {{"within", pair_json(likeness.original_within)},
-            {"between", pair_json(likeness.original_between)}}},
+           {{"within", pair_json(similarity.original_within)},
+            {"between", pair_json(similarity.original_between)}}},
           {"texture",
-           {{"within", pair_json(likeness.texture_within)},
-            {"between", pair_json(likeness.texture_between)}}}};
+           {{"within", pair_json(similarity.texture_within)},
+            {"between", pair_json(similarity.texture_between)}}}};
 }
 
 Json set_json(const SetMeasures& set) {
   return {{"set", set.set},
           {"classes", set.classes},
           {"pictures", set.pictures},
-          {"ms_ssim", set.likeness ? likeness_json(*set.likeness) : Json()}};
+          {"ms_ssim", set.similarity ? similarity_json(*set.similarity) : Json()}};
 }
 
 }  // namespace
 
 std::string measures_text(const MeasuredPictures& measured) {
-  return pictures_text(measured) + "\n" + likeness_text(measured) + "\n" +
+  return pictures_text(measured) + "\n" + similarity_text(measured) + "\n" +
          wrapped("  ",
                  fmt::format(
-                     "Forces are those of a tangential gain of {:.4g} N per grey level and pixel. "
-                     "Co-occurrence numbers are means over four directions; T: of the texture. "
-                     "Slope: of log power over log frequency. MS-SSIM with exponents 1.",
+                     "Forces assume a tangential gain of {:.4g} N per grey level and pixel. "
+                     "Co-occurrence numbers are means over four directions; T is the texture. "
+                     "Slope is that of log power over log frequency. MS-SSIM uses exponents of 1.",
                      measured.tangential_gain_n));
 }
 

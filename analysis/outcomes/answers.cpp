@@ -17,7 +17,6 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// The names of the program's own questionnaires.
 constexpr const char* kHandedness = "handedness";
 constexpr const char* kClosing = "closing";
 
@@ -39,18 +38,18 @@ bool is_option(double number, std::size_t options) {
   return number >= 0.0 && number < static_cast<double>(options);
 }
 
-/// The answers to one question, by participant who counts.
-using AnswersOfPeople = std::map<std::string, const QuestionAnswer*>;
+/// The answers to one question, by counted participant.
+using AnswersByParticipant = std::map<std::string, const QuestionAnswer*>;
 
 QuestionSummary question_summary(const std::string& id, const study::Question* question,
-                                 const AnswersOfPeople& answers, const Outcomes& outcomes) {
+                                 const AnswersByParticipant& answers, const Outcomes& outcomes) {
   const bool is_public = outcomes.collection.is_public;
   QuestionSummary summary;
   summary.question = id;
   summary.answered = static_cast<int>(answers.size());
-  const bool counts = answers.begin()->second->number.has_value();
+  const bool is_number = answers.begin()->second->number.has_value();
   summary.kind = question != nullptr ? question->kind
-                 : counts            ? study::QuestionKind::number
+                 : is_number         ? study::QuestionKind::number
                                      : study::QuestionKind::text;
   const std::string& language = outcomes.design.session.language;
   if (question != nullptr) {
@@ -73,8 +72,8 @@ QuestionSummary question_summary(const std::string& id, const study::Question* q
         ++summary.options[static_cast<std::size_t>(number)].people;
       }
     }
-    if (is_public) summary.others = keep_large_bands(summary.options, 0);
-  } else if (!is_public || summary.answered >= kMinOfBand) {
+    if (is_public) summary.others = remove_small_bands(summary.options, 0);
+  } else if (!is_public || summary.answered >= kMinBandPeople) {
     summary.numbers = quartiles(std::move(numbers));
   }
   return summary;
@@ -86,22 +85,23 @@ std::vector<QuestionAnswer> open_answers(const StudyEvents& study, const Session
   std::map<int, record::SessionRow> rows;
   for (const record::SessionRow& row : study.store().sessions()) rows[row.session] = row;
   std::vector<QuestionAnswer> all;
-  constexpr std::array kQuestioned = {record::EventKind::questioned};
-  study.for_each_of(kQuestioned, [&](const record::Event& event) {
-    const auto own = keys.find(event.session);
-    if (own == keys.end() || !own->second.participant) return;
+  constexpr std::array kAnswerKinds = {record::EventKind::questioned};
+  study.for_each_of(kAnswerKinds, [&](const record::Event& event) {
+    const auto key = keys.find(event.session);
+    if (key == keys.end() || !key->second.participant) return;
     add_answers(rows.at(event.session), record::from_json<record::TextBody>(event.body).text,
-                whole_event(event, *own->second.participant).secret, all);
+                open_event(event, *key->second.participant).secret, all);
   });
   return all;
 }
 
-Questionnaires own_questions(const study::Study& study) {
+Questionnaires closing_questionnaires(const study::Study& study) {
   return {{kClosing, study.session.closing_questions}};
 }
 
-const study::Question* question_of(const Questionnaires& asked, const QuestionAnswer& answer) {
-  for (const study::Questionnaire& questionnaire : asked) {
+const study::Question* question_of(const Questionnaires& questionnaires,
+                                   const QuestionAnswer& answer) {
+  for (const study::Questionnaire& questionnaire : questionnaires) {
     if (questionnaire.name != answer.questionnaire) continue;
     const auto found =
         std::ranges::find(questionnaire.questions, answer.question, &study::Question::id);
@@ -126,16 +126,17 @@ std::string words_of(const QuestionAnswer& answer, const study::Question* questi
 }
 
 bool is_demographic(const std::string& questionnaire, const std::string& question) {
-  constexpr std::array<std::string_view, 3> kOfPeople{"age", "sex", "gender"};
-  return questionnaire == kHandedness || std::ranges::find(kOfPeople, question) != kOfPeople.end();
+  constexpr std::array<std::string_view, 3> kDemographicQuestions{"age", "sex", "gender"};
+  return questionnaire == kHandedness ||
+         std::ranges::find(kDemographicQuestions, question) != kDemographicQuestions.end();
 }
 
-std::vector<QuestionSummary> summaries_of(const Outcomes& outcomes) {
+std::vector<QuestionSummary> question_summaries(const Outcomes& outcomes) {
   std::set<int> counted;
   for (const SessionOutcome& session : outcomes.sessions) {
     if (session.counted) counted.insert(session.row.session);
   }
-  std::map<std::string, AnswersOfPeople> by_question;
+  std::map<std::string, AnswersByParticipant> by_question;
   for (const QuestionAnswer& answer : outcomes.answers) {
     if (!counted.contains(answer.session)) continue;
     if (is_demographic(answer.questionnaire, answer.question)) continue;
@@ -148,7 +149,7 @@ std::vector<QuestionSummary> summaries_of(const Outcomes& outcomes) {
     summaries.push_back(question_summary(id, question, found->second, outcomes));
     by_question.erase(found);
   };
-  for (const study::Questionnaire& questionnaire : outcomes.asked) {
+  for (const study::Questionnaire& questionnaire : outcomes.questionnaires) {
     for (const study::Question& question : questionnaire.questions) add(question.id, &question);
   }
   while (!by_question.empty()) add(std::string(by_question.begin()->first), nullptr);

@@ -14,19 +14,19 @@ namespace touchtrial::analysis {
 namespace {
 
 /// The row of an erased session, without data about the participant.
-record::SessionRow without_participant(const record::SessionRow& row) {
-  record::SessionRow bare;
-  bare.session = row.session;
-  bare.state = row.state;
-  bare.withdrawn = true;
-  bare.erased = true;
-  return bare;
+record::SessionRow anonymous_row(const record::SessionRow& row) {
+  record::SessionRow anonymous;
+  anonymous.session = row.session;
+  anonymous.state = row.state;
+  anonymous.withdrawn = true;
+  anonymous.erased = true;
+  return anonymous;
 }
 
 std::map<int, SessionRecord> empty_records(const std::vector<record::SessionRow>& rows) {
   std::map<int, SessionRecord> records;
   for (const record::SessionRow& row : rows) {
-    records[row.session].row = row.erased ? without_participant(row) : row;
+    records[row.session].row = row.erased ? anonymous_row(row) : row;
   }
   return records;
 }
@@ -44,16 +44,16 @@ bool is_practice_failure(const Deviation& deviation) {
   return deviation.code == "practice-not-passed";
 }
 
-/// Sets the values that depend on all of a session's events together.
-void finish(SessionRecord& record) {
+/// Sets the values that depend on all events of a session.
+void complete_record(SessionRecord& record) {
   if (record.practice) {
     record.practice->passed = std::ranges::none_of(record.deviations, is_practice_failure);
   }
-  // A stop does not count if the session was resumed after it.
+  // A stop is dropped if the session was resumed afterwards.
   if (record.row.state != record::SessionState::stopped) record.stop_reason.clear();
 }
 
-/// \return nothing for no times
+/// \return nothing without times
 std::optional<double> median_in_tenths(std::vector<double> times_s) {
   if (times_s.empty()) return std::nullopt;
   std::ranges::sort(times_s);
@@ -70,18 +70,18 @@ std::optional<AnswerSpread> spread_of(std::vector<record::TrialRow> trials) {
   std::ranges::sort(trials, {}, &record::TrialRow::answered_at);
   AnswerSpread spread;
   std::map<int, int> counts;
-  int most = 0;
+  int max_count = 0;
   int run = 0;
   std::vector<double> times_s;
   for (std::size_t i = 0; i < trials.size(); ++i) {
-    most = std::max(most, ++counts[*position_of(trials[i].answer)]);
+    max_count = std::max(max_count, ++counts[*position_of(trials[i].answer)]);
     run = i > 0 && position_of(trials[i].answer) == position_of(trials[i - 1].answer) ? run + 1 : 1;
     spread.longest_run = std::max(spread.longest_run, run);
-    const auto took = trials[i].reaction_time();
-    if (took) times_s.push_back(std::chrono::duration<double>(*took).count());
+    const auto time = trials[i].reaction_time();
+    if (time) times_s.push_back(std::chrono::duration<double>(*time).count());
   }
   spread.different = static_cast<int>(counts.size());
-  spread.largest_share = static_cast<double>(most) / static_cast<double>(trials.size());
+  spread.largest_share = static_cast<double>(max_count) / static_cast<double>(trials.size());
   spread.median_s = median_in_tenths(std::move(times_s));
   return spread;
 }
@@ -133,22 +133,22 @@ Collection load_collection(const StudyEvents& study, const SessionKeys& keys) {
   const auto add = [&](const record::Event& event) {
     const auto record = records.find(record::session_about(event));
     if (record == records.end() || record->second.row.erased) return;
-    const auto own = keys.find(record->first);
-    const bool has_more = own != keys.end() && is_partly_sealed(event.kind);
-    add_to_record(has_more ? readable_event(event, record->second.row, own->second) : event,
+    const auto key = keys.find(record->first);
+    const bool can_open = key != keys.end() && is_partly_sealed(event.kind);
+    add_to_record(can_open ? readable_event(event, record->second.row, key->second) : event,
                   record->second);
     if (event.kind != record::EventKind::trace_stored) return;
     if (const auto servo = servo_trial_of(event)) collection.servo_trials.push_back(*servo);
   };
-  study.for_each_of(kinds_in_sessions(), add);
-  for (const record::Event& event : store.events(0)) add(event);  // later notes come last
+  study.for_each_of(collection_event_kinds(), add);
+  for (const record::Event& event : store.events(0)) add(event);  // notes made afterwards
   for (const record::TrialRow& trial : store.trials()) {
     const auto record = records.find(trial.session);
     if (record == records.end() || record->second.row.withdrawn) continue;
     count_hand(trial, record->second.outside);
   }
   for (auto& [session, record] : records) {
-    finish(record);
+    complete_record(record);
     collection.visual = collection.visual || (record.station && record.station->visual);
     collection.sessions.push_back(std::move(record));
   }

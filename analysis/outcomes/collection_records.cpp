@@ -9,11 +9,11 @@
 namespace touchtrial::analysis {
 namespace {
 
-constexpr std::array kKinds = {record::EventKind::opened,   record::EventKind::practised,
-                               record::EventKind::deviated, record::EventKind::stopped,
-                               record::EventKind::resumed,  record::EventKind::interrupted,
-                               record::EventKind::paused,   record::EventKind::trace_stored,
-                               record::EventKind::noted,    record::EventKind::closed};
+constexpr std::array kCollectionKinds = {
+    record::EventKind::opened,  record::EventKind::practised,    record::EventKind::deviated,
+    record::EventKind::stopped, record::EventKind::resumed,      record::EventKind::interrupted,
+    record::EventKind::paused,  record::EventKind::trace_stored, record::EventKind::noted,
+    record::EventKind::closed};
 
 void add_opening(const record::Event& event, SessionRecord& session) {
   record::SessionOpening opening = record::from_json<record::SessionOpening>(event.body);
@@ -24,47 +24,46 @@ void add_opening(const record::Event& event, SessionRecord& session) {
 }
 
 /// The free text of an event, if it is opened.
-std::string words_of(const record::Event& event, const std::string& text) {
+std::string text_if_opened(const record::Event& event, const std::string& text) {
   return event.sealed.empty() ? text : "(sealed)";
 }
 
 void add_exclusion(const record::Event& event, SessionRecord& session) {
   const record::ParticipantBody body = record::from_json<record::ParticipantBody>(event.body);
-  session.exclusion_reason = words_of(event, body.reason);
+  session.exclusion_reason = text_if_opened(event, body.reason);
   session.after_outcomes = body.after_outcomes;
 }
 
-std::string stop_in(const record::Event& event) {
+std::string stop_reason_of(const record::Event& event) {
   const record::StopBody body = record::from_json<record::StopBody>(event.body);
-  return body.code.empty() ? words_of(event, body.text) : body.code;
+  return body.code.empty() ? text_if_opened(event, body.text) : body.code;
 }
 
-void add_end(const record::ClosedBody& closed, SessionRecord& session) {
-  session.answers = closed.answers;
-  session.one_key = closed.one_key;
-  session.largest_force_n = closed.largest_force_n;
+void add_closing(const record::ClosedBody& body, SessionRecord& session) {
+  session.answers = body.answers;
+  session.one_key = body.one_key;
+  session.largest_force_n = body.largest_force_n;
 }
 
-void add_practice(const record::PracticeBody& practised, SessionRecord& session) {
+void add_practice(const record::PracticeBody& body, SessionRecord& session) {
   if (!session.practice) session.practice.emplace();
   PracticeRecord& practice = *session.practice;
-  practice.rounds = std::max(practice.rounds, practised.round);
+  practice.rounds = std::max(practice.rounds, body.round);
   ++practice.presentations;
-  if (practised.correct)
-    practice.correct = practice.correct.value_or(0) + (*practised.correct ? 1 : 0);
+  if (body.correct) practice.correct = practice.correct.value_or(0) + (*body.correct ? 1 : 0);
 }
 
 void add_deviation(const std::string& code, const std::string& text, SessionRecord& session) {
-  const bool known = std::ranges::any_of(session.deviations, [&](const Deviation& one) {
+  const bool is_duplicate = std::ranges::any_of(session.deviations, [&](const Deviation& one) {
     return one.code == code && one.text == text;
   });
-  if (!known) session.deviations.push_back({code, text});
+  if (!is_duplicate) session.deviations.push_back({code, text});
 }
 
 }  // namespace
 
-std::span<const record::EventKind> kinds_in_sessions() {
-  return kKinds;
+std::span<const record::EventKind> collection_event_kinds() {
+  return kCollectionKinds;
 }
 
 bool is_partly_sealed(record::EventKind kind) {
@@ -102,17 +101,17 @@ void add_to_record(const record::Event& event, SessionRecord& session) {
       return add_exclusion(event, session);
     case record::EventKind::participant_replaced:
       session.replacement_reason =
-          words_of(event, record::from_json<record::ReplacementBody>(event.body).reason);
+          text_if_opened(event, record::from_json<record::ReplacementBody>(event.body).reason);
       return;
     case record::EventKind::stopped:
-      session.stop_reason = stop_in(event);
+      session.stop_reason = stop_reason_of(event);
       return;
     case record::EventKind::participant_withdrawn:
       session.withdrawal_reason =
-          words_of(event, record::from_json<record::WithdrawalBody>(event.body).reason);
+          text_if_opened(event, record::from_json<record::WithdrawalBody>(event.body).reason);
       return;
     case record::EventKind::resumed:
-      // A session that was only paused does not count as resumed.
+      // Continuing after a pause does not count as resuming.
       if (record::from_json<record::ResumedBody>(event.body).after == "program-ended")
         ++session.resumed;
       return;
@@ -128,7 +127,7 @@ void add_to_record(const record::Event& event, SessionRecord& session) {
       ++session.notes;
       return;
     case record::EventKind::closed:
-      return add_end(record::from_json<record::ClosedBody>(event.body), session);
+      return add_closing(record::from_json<record::ClosedBody>(event.body), session);
     default:
       return;
   }
@@ -141,15 +140,15 @@ std::string exclusion_words(const SessionRecord& session) {
 
 std::vector<std::string> people_notes(const Collection& collection) {
   std::vector<std::string> notes;
-  const int kept = collection.flow.withdrawn - collection.flow.erased;
-  if (kept > 0) {
-    notes.push_back(counted(kept, "participant") +
-                    " withdrew and let the data be used: counted like the others.");
+  const int not_erased = collection.flow.withdrawn - collection.flow.erased;
+  if (not_erased > 0) {
+    notes.push_back(counted(not_erased, "participant") +
+                    " withdrew but let the data be used; they are counted like the others.");
   }
   for (const record::PersonLook& look : collection.looks) {
-    notes.push_back(collection.is_public ? "Outcomes of one participant alone were looked at."
-                                         : "Outcomes of participant " + look.participant +
-                                               " alone were looked at: " + look.reason + ".");
+    notes.push_back(collection.is_public ? "The outcomes of one participant were viewed separately."
+                                         : "The outcomes of participant " + look.participant +
+                                               " were viewed separately: " + look.reason + ".");
   }
   return notes;
 }

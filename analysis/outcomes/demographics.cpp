@@ -19,7 +19,7 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-/// The text of an option in lower case, in English if the study has it in English.
+/// The text of an option in lower case, in English if available.
 std::optional<std::string> option_text(const study::Study& study, const std::string& question,
                                        double option) {
   for (const study::Question& one : study.session.closing_questions) {
@@ -43,7 +43,7 @@ std::string age_band(double age) {
 
 /// The laterality quotient: the mean over the inventory's four items, each 100 (always right), 50,
 /// 0, -50 or -100. Source: Veale (2014), Laterality 19, 164-177.
-/// \param answers  of one session to the inventory, by item
+/// \param answers  one session's answers to the inventory, by item
 /// \return nothing if an item has no answer
 std::optional<double> handedness_score(const std::map<std::string, double>& answers) {
   constexpr std::array<const char*, 4> kItems{"writing", "throwing", "toothbrush", "spoon"};
@@ -57,17 +57,24 @@ std::optional<double> handedness_score(const std::map<std::string, double>& answ
   return sum / static_cast<double>(kItems.size());
 }
 
-/// \param counts  people by band, and under "" those who did not say
-std::optional<Characteristic> shown(const std::string& name, std::map<std::string, int> counts) {
-  Characteristic shown{name, {}, counts[""]};
+/// \param counts  people by band; "" are those who did not answer
+std::optional<Characteristic> shown_bands(const std::string& name,
+                                          std::map<std::string, int> counts) {
+  Characteristic characteristic{name, {}, counts[""]};
   counts.erase("");
   if (counts.empty()) return std::nullopt;
-  for (const auto& [band, people] : counts) shown.bands.push_back({band, people});
-  shown.others = keep_large_bands(shown.bands, shown.others);
-  return shown;
+  for (const auto& [band, people] : counts) characteristic.bands.push_back({band, people});
+  characteristic.others = remove_small_bands(characteristic.bands, characteristic.others);
+  return characteristic;
 }
 
 }  // namespace
+
+void Demographics::update(const Demographics& later) {
+  if (later.age_band) age_band = later.age_band;
+  if (later.sex) sex = later.sex;
+  if (later.handedness_score) handedness_score = later.handedness_score;
+}
 
 std::string handedness_of(double score) {
   if (score > 60.0) return "right";
@@ -77,37 +84,37 @@ std::string handedness_of(double score) {
 std::map<int, Demographics> demographics_of(const std::vector<QuestionAnswer>& answers,
                                             const study::Study& study) {
   std::map<int, Demographics> all;
-  std::map<int, std::map<std::string, double>> hands;
+  std::map<int, std::map<std::string, double>> handedness_answers;
   for (const QuestionAnswer& answer : answers) {
-    Demographics& of = all[answer.session];
+    Demographics& session = all[answer.session];
     if (!answer.number) continue;
     if (answer.questionnaire == "handedness") {
-      hands[answer.session][answer.question] = *answer.number;
+      handedness_answers[answer.session][answer.question] = *answer.number;
     }
-    if (answer.question == "age") of.age_band = age_band(*answer.number);
+    if (answer.question == "age") session.age_band = age_band(*answer.number);
     if (answer.question != "sex" && answer.question != "gender") continue;
-    if (const auto text = option_text(study, answer.question, *answer.number)) of.sex = text;
+    if (const auto text = option_text(study, answer.question, *answer.number)) session.sex = text;
   }
-  for (const auto& [session, items] : hands)
-    all[session].handedness_score = handedness_score(items);
+  for (const auto& [number, items] : handedness_answers)
+    all[number].handedness_score = handedness_score(items);
   return all;
 }
 
-int keep_large_bands(std::vector<Band>& bands, int others) {
+int remove_small_bands(std::vector<Band>& bands, int others) {
   std::erase_if(bands, [&](const Band& band) {
-    if (band.people >= kMinOfBand) return false;
+    if (band.people >= kMinBandPeople) return false;
     others += band.people;
     return true;
   });
-  while (others > 0 && others < kMinOfBand && !bands.empty()) {
-    const auto least = std::ranges::min_element(bands, {}, &Band::people);
-    others += least->people;
-    bands.erase(least);
+  while (others > 0 && others < kMinBandPeople && !bands.empty()) {
+    const auto smallest_band = std::ranges::min_element(bands, {}, &Band::people);
+    others += smallest_band->people;
+    bands.erase(smallest_band);
   }
   return others;
 }
 
-std::vector<Characteristic> in_bands(const std::vector<Demographics>& people) {
+std::vector<Characteristic> banded_characteristics(const std::vector<Demographics>& people) {
   std::map<std::string, int> ages;
   std::map<std::string, int> sexes;
   std::map<std::string, int> hands;
@@ -117,7 +124,8 @@ std::vector<Characteristic> in_bands(const std::vector<Demographics>& people) {
     ++hands[one.handedness_score ? handedness_of(*one.handedness_score) : ""];
   }
   std::vector<Characteristic> all;
-  for (auto& one : {shown("age", ages), shown("sex", sexes), shown("handedness", hands)}) {
+  for (auto& one :
+       {shown_bands("age", ages), shown_bands("sex", sexes), shown_bands("handedness", hands)}) {
     if (one) all.push_back(*one);
   }
   return all;

@@ -16,9 +16,12 @@ struct Demographics {
   std::optional<std::string> age_band;     ///< for example "20-29", "under 18" or "70 or more"
   std::optional<std::string> sex;          ///< the text of the chosen option, in lower case
   std::optional<double> handedness_score;  ///< -100 to 100
+
+  /// Replaces the values that a later session has.
+  void update(const Demographics& later);
 };
 
-/// "right", "left" or "ambidextrous", with the bounds of 60 and -60 of Veale (2014).
+/// "right", "left" or "ambidextrous", by Veale's (2014) bounds of 60 and -60.
 [[nodiscard]] std::string handedness_of(double score);
 
 struct QuestionAnswer;
@@ -26,12 +29,12 @@ struct QuestionAnswer;
 /// Demographics by session. They come from answers to questions with the id "age" (a number), "sex"
 /// or "gender", and from the handedness inventory. Texts are never read, because they may name
 /// people.
-/// \param study  has the options of its questions
+/// \param study  defines the options of its questions
 [[nodiscard]] std::map<int, Demographics> demographics_of(
     const std::vector<QuestionAnswer>& answers, const study::Study& study);
 
-/// The minimum number of people in a band that is shown. Fewer could be identified.
-inline constexpr int kMinOfBand = 5;
+/// The minimum number of people in a shown band. Fewer could be identified.
+inline constexpr int kMinBandPeople = 5;
 
 /// People in one band.
 struct Band {
@@ -42,20 +45,21 @@ struct Band {
 /// The distribution of a group of people over one characteristic.
 struct Characteristic {
   std::string name;         ///< "age", "sex", "handedness"
-  std::vector<Band> bands;  ///< each of kMinOfBand people or more; empty: nothing can be shown
-  /// People in smaller bands and people who did not answer, together: 0, or at least kMinOfBand.
-  /// The smallest band is merged into them if they are too few.
+  std::vector<Band> bands;  ///< each of kMinBandPeople people or more; empty: nothing can be shown
+  /// People in smaller bands plus those who did not answer: 0, or at least kMinBandPeople. If they
+  /// are too few, the smallest shown band is added.
   int others = 0;
 };
 
-/// Removes bands of fewer than kMinOfBand people. Also removes the smallest band while the
-/// remainder is too small, because it could be computed from the total.
-/// \param others  people in no band
-/// \return the people in no band now
-[[nodiscard]] int keep_large_bands(std::vector<Band>& bands, int others);
+/// Removes bands of fewer than kMinBandPeople people. Also removes the smallest band while the
+/// others are too few, because their number follows from the total.
+/// \param others  people who are in no band
+/// \return people who are now in no band
+[[nodiscard]] int remove_small_bands(std::vector<Band>& bands, int others);
 
-/// The characteristics of a group, without those that nobody answered.
-/// \param people  one entry for each person, empty if the person gave no answers
-[[nodiscard]] std::vector<Characteristic> in_bands(const std::vector<Demographics>& people);
+/// The characteristics of a group, without characteristics that nobody stated.
+/// \param people  one entry per person, empty if the person gave no answers
+[[nodiscard]] std::vector<Characteristic> banded_characteristics(
+    const std::vector<Demographics>& people);
 
 }  // namespace touchtrial::analysis

@@ -1,5 +1,5 @@
-/// \file Every departure from what was registered: looks, numbers, sessions left out, and deviations.
-/// Docs: docs/statistics.md, "The registered question".
+/// \file Departures from the registration: looks, numbers of participants, excluded sessions, and
+/// deviations. Source: docs/statistics.md, "The registered question".
 #pragma once
 
 #include "analysis/outcomes/outcomes.hpp"
@@ -11,17 +11,15 @@
 
 namespace touchtrial::analysis {
 
-/// The sessions that a registered rule excludes, each with the first such rule in words.
-[[nodiscard]] std::map<int, std::string> rules_met(const Outcomes& outcomes);
+/// The sessions that a registered rule excludes, each with a description of the first such rule.
+[[nodiscard]] std::map<int, std::string> met_exclusion_rules(const Outcomes& outcomes);
 
-/// The sessions that miss more catch trials than the registered rule allows. Only outcomes show
-/// this, so the analysis leaves them out even if the experimenter did not exclude them.
-[[nodiscard]] std::set<int> with_missed_catches(const Outcomes& outcomes);
+/// The sessions with more missed catch trials than the registered rule allows. Because only
+/// outcomes show this, the analysis omits them even if the experimenter did not exclude them.
+[[nodiscard]] std::set<int> sessions_with_missed_catches(const Outcomes& outcomes);
 
-/// Every departure from the plan, in one or two sentences each, the most serious first.
-///
-/// \param ended_at_look  as in PrimaryResult; if set, fewer participants than planned are not a
-///   departure
+/// Every departure from the registration, in one or two sentences each, the most serious first.
+/// \param ended_at_look  as in PrimaryResult; if set, stopping early is not a departure
 [[nodiscard]] std::vector<std::string> departures_of(const Outcomes& outcomes,
                                                      bool ended_at_look = false);
 

@@ -14,22 +14,22 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// New names by old ones.
+/// New names by id.
 using Names = std::map<std::string, std::string>;
 
-/// Ranks all ids of a study: by their accuracy, those without counted trials last.
-Names ranked(const Outcomes& outcomes) {
+/// Names all participants by the rank of their accuracy, those without counted trials last.
+Names names_by_rank(const Outcomes& outcomes) {
   std::map<std::string, Proportion> accuracy;
   for (const SessionOutcome& session : outcomes.sessions) accuracy[session.row.participant];
   for (const TrialOutcome& trial : outcomes.trials) {
     if (!trial.counted) continue;
-    Proportion& own = accuracy[trial.participant];
-    ++own.n;
-    if (trial.correct()) ++own.correct;
+    accuracy[trial.participant].add(trial.correct());
   }
   accuracy.erase("");
   std::vector<std::pair<double, std::string>> order;
-  for (const auto& [id, own] : accuracy) order.emplace_back(-own.share().value_or(-1.0), id);
+  for (const auto& [id, proportion] : accuracy) {
+    order.emplace_back(-proportion.share().value_or(-1.0), id);
+  }
   std::ranges::sort(order);
   Names names;
   const std::size_t width = std::to_string(order.size()).size();
@@ -50,7 +50,7 @@ void rename(const Names& names, record::SessionRow& row) {
   rename(names, row.replaced_by);
 }
 
-std::string code_of(const std::string& code, const std::set<std::string>& registered) {
+std::string public_code_of(const std::string& code, const std::set<std::string>& registered) {
   return registered.contains(code) || study::is_deviation_code(code) ? code : "other";
 }
 
@@ -65,9 +65,9 @@ void strip(SessionRecord& session, const Names& names, const std::set<std::strin
   session.handedness_score.reset();
   std::vector<Deviation> deviations;
   for (const Deviation& one : session.deviations) {
-    Deviation bare{code_of(one.code, registered), ""};
-    const auto same = [&](const Deviation& other) { return other.code == bare.code; };
-    if (std::ranges::none_of(deviations, same)) deviations.push_back(std::move(bare));
+    const std::string code = public_code_of(one.code, registered);
+    if (std::ranges::count(deviations, code, &Deviation::code) == 0)
+      deviations.push_back({code, ""});
   }
   session.deviations = std::move(deviations);
 }
@@ -82,7 +82,7 @@ void strip(std::vector<record::PersonLook>& looks, const Names& names) {
 }  // namespace
 
 Outcomes without_identities(Outcomes outcomes) {
-  const Names names = ranked(outcomes);
+  const Names names = names_by_rank(outcomes);
   std::set<std::string> registered;
   const auto& analysis = outcomes.design.registration.analysis;
   if (analysis && analysis->exclusion_rules) {

@@ -1,4 +1,4 @@
-/// \file De-identified outcomes, for reports that everybody may read.
+/// \file De-identified outcomes for public reports.
 #pragma once
 
 #include "analysis/outcomes/outcomes.hpp"
@@ -9,10 +9,8 @@ namespace touchtrial::analysis {
 /// while the study ran: reasons, notes, free-text answers, and descriptions of deviations.
 /// Participants are named by the rank of their accuracy, from "1" (zero-padded), so a name reveals
 /// neither identity nor session order. Codes of deviations that are neither the program's nor
-/// registered become "other". The study's own texts (labels, registration) stay: they were
-/// deposited.
-///
-/// Computed results do not change. Sets `collection.is_public`.
+/// registered become "other". The study's texts (labels, registration) stay, because they were
+/// deposited. Computed results do not change. Sets `collection.is_public`.
 [[nodiscard]] Outcomes without_identities(Outcomes outcomes);
 
 }  // namespace touchtrial::analysis

@@ -15,19 +15,19 @@ namespace {
 
 using record::EventKind;
 
-constexpr std::size_t kInSessions = 8;
-constexpr std::array kIncidents = {EventKind::interrupted,
-                                   EventKind::break_taken,
-                                   EventKind::paused,
-                                   EventKind::resumed,
-                                   EventKind::stopped,
-                                   EventKind::noted,
-                                   EventKind::deviated,
-                                   EventKind::block_restarted,
-                                   EventKind::participant_noted,
-                                   EventKind::participant_excluded,
-                                   EventKind::participant_replaced,
-                                   EventKind::participant_withdrawn};
+constexpr std::size_t kSessionKinds = 8;  ///< kinds on sessions' chains, first in kIncidentKinds
+constexpr std::array kIncidentKinds = {EventKind::interrupted,
+                                       EventKind::break_taken,
+                                       EventKind::paused,
+                                       EventKind::resumed,
+                                       EventKind::stopped,
+                                       EventKind::noted,
+                                       EventKind::deviated,
+                                       EventKind::block_restarted,
+                                       EventKind::participant_noted,
+                                       EventKind::participant_excluded,
+                                       EventKind::participant_replaced,
+                                       EventKind::participant_withdrawn};
 
 /// Reads the event's body into the incident.
 /// \return whether an event of this kind is an incident
@@ -99,7 +99,7 @@ bool read_body(const record::Event& event, Incident& incident) {
 }  // namespace
 
 std::span<const EventKind> incident_kinds() {
-  return kIncidents;
+  return kIncidentKinds;
 }
 
 std::optional<Incident> incident_of(const record::Event& event, const record::SessionRow& row) {
@@ -124,12 +124,12 @@ std::vector<Incident> load_incidents(const StudyEvents& study,
   const auto add = [&](const record::Event& event) {
     const auto row = rows.find(record::session_about(event));
     if (row == rows.end()) return;
-    const auto own = keys.find(row->first);
+    const auto key = keys.find(row->first);
     auto incident = incident_of(
-        own == keys.end() ? event : readable_event(event, row->second, own->second), row->second);
+        key == keys.end() ? event : readable_event(event, row->second, key->second), row->second);
     if (incident) incidents.push_back(*std::move(incident));
   };
-  study.for_each_of(std::span(kIncidents).first(kInSessions), add);
+  study.for_each_of(std::span(kIncidentKinds).first(kSessionKinds), add);
   for (const record::Event& event : store.events(0)) add(event);
   std::ranges::stable_sort(incidents, {}, &Incident::session);
   return incidents;
@@ -137,17 +137,17 @@ std::vector<Incident> load_incidents(const StudyEvents& study,
 
 std::vector<InstrumentMark> load_marks(const StudyEvents& study,
                                        const std::map<int, record::PersonKeys>& keys) {
-  constexpr std::array kMarked = {EventKind::marked};
+  constexpr std::array kMarkKinds = {EventKind::marked};
   std::map<int, std::string> participants;
   for (const record::SessionRow& row : study.store().sessions()) {
     participants[row.session] = row.participant;
   }
   std::vector<InstrumentMark> marks;
-  study.for_each_of(kMarked, [&](const record::Event& event) {
-    const auto own = keys.find(event.session);
-    if (own == keys.end() || !own->second.participant) return;
+  study.for_each_of(kMarkKinds, [&](const record::Event& event) {
+    const auto key = keys.find(event.session);
+    if (key == keys.end() || !key->second.participant) return;
     const record::MarksBody body =
-        record::from_json<record::MarksBody>(whole_event(event, *own->second.participant).secret);
+        record::from_json<record::MarksBody>(open_event(event, *key->second.participant).secret);
     for (std::size_t i = 0; i < body.codes.size(); ++i) {
       InstrumentMark mark{.participant = participants[event.session],
                           .session = event.session,

@@ -1,4 +1,4 @@
-/// \file Stimuli and answers of a study after unblinding.
+/// \file A study's stimuli and answers after unblinding.
 #pragma once
 
 #include "analysis/outcomes/answers.hpp"
@@ -23,7 +23,7 @@ struct SessionOutcome {
   std::optional<int> group{};  ///< index into the study's groups
 };
 
-/// What an adaptive order chose for a trial.
+/// The level that an adaptive order chose for a trial.
 struct ChosenLevel {
   int track = 0;   ///< from 1; 0: none
   int level = 0;   ///< index into the track's levels
@@ -36,14 +36,14 @@ struct ChosenLevel {
 struct TrialOutcome {
   std::string participant;
   record::TrialRow row;
-  study::StimulusIndex stimulus;       ///< of a track: the stimulus of its step
+  study::StimulusIndex stimulus;       ///< for tracks, the stimulus of the step
   double gain_db = 0.0;                ///< study::Plane::gain_db
   std::vector<study::Plane> planes{};  ///< from the schedule; empty if an adaptive order chose
   study::Role role = study::Role::scored;
   std::optional<ChosenLevel> chosen{};
   std::optional<int> picture{};  ///< class whose picture was shown with the question
-  bool has_stimulus = false;     ///< the schedule has one textured plane for it
-  bool scored = false;           ///< by the schedule; not a lead-in or catch trial
+  bool has_stimulus = false;     ///< the schedule has exactly one textured plane for the trial
+  bool scored = false;           ///< by the schedule: not a lead-in or catch trial
   bool counted = false;          ///< counts towards accuracy
   std::optional<int> response;   ///< index of the chosen alternative; empty: no response
   std::optional<int> right;      ///< index of the right choice; empty: there is none
@@ -53,7 +53,7 @@ struct TrialOutcome {
 
   /// Whether the response is right. A trial without a response is wrong.
   [[nodiscard]] bool correct() const noexcept { return response && response == right; }
-  /// Whether the trial passes the whole validity rule: its clear part and its sealed part.
+  /// Whether the trial passes both parts of the validity rule, the unencrypted and the sealed one.
   [[nodiscard]] bool valid() const noexcept {
     return row.valid && (!measures || measures->within_limits);
   }
@@ -71,48 +71,45 @@ struct Outcomes {
   std::vector<std::string> choices;                 ///< labels of the alternatives
   std::vector<std::string> methods;                 ///< labels of the presented methods
   std::vector<SessionOutcome> sessions;             ///< by number, including erased sessions
-  /// Sessions that had not ended at an interim look. They are neither in `sessions` nor in
-  /// `trials`.
+  /// Sessions that had not ended at an interim look; not in `sessions` or `trials`.
   int sessions_unseen = 0;
   std::vector<TrialOutcome> trials;  ///< by session and trial, without erased sessions
   study::Study design;               ///< the study file, including the rule for drawing orders
   LookRecord look_record;            ///< looks at outcomes, and decisions after them
   Collection collection;
-  std::vector<Characteristic> demographics{};  ///< of the participants who count
+  std::vector<Characteristic> demographics{};  ///< of counted participants
   std::vector<QuestionAnswer> answers{};       ///< of `sessions`
   std::vector<Incident> incidents{};           ///< of `sessions`, with texts and times
   std::vector<InstrumentMark> marks{};         ///< of `sessions`
-  /// The questions that were asked: the study's own; the caller may add those of the program.
-  Questionnaires asked{};
+  /// The study's questions, to which the caller may add the program's questions.
+  Questionnaires questionnaires{};
 };
 
 /// "session 2, event 7: <what>"
 [[nodiscard]] std::string shown(const record::ChainFault& fault);
 
-/// Opens every sealed schedule and measure and scores the answers with them.
+/// Opens every sealed schedule and measure and scores the answers.
 ///
 /// A session counts if it was completed and is neither excluded, erased nor replaced, and its
-/// participant has all visits that the study needs. A pilot or simulated session counts only if the
-/// whole study is one. A scored trial of a counted session counts if it ended, either with an
-/// answer or without a response when time ran out. A trial that was interrupted and repeated keeps
-/// its number, and its last presentation with an answer counts. A trial that was interrupted and
-/// never repeated does not count. After an interim look, the result has only the sessions that had
-/// ended before it, until the next unblinding.
+/// participant completed all needed visits. A pilot or simulated session counts only in a pilot or
+/// simulated study. A scored trial of a counted session counts if it ended with an answer or timed
+/// out. A repeated trial keeps its number, and its last presentation with an answer counts. A trial
+/// that was interrupted and never repeated does not count. After an interim look, the result has
+/// only the sessions that had ended before it, until the next unblinding.
 ///
-/// Chains, sealed ends and derived tables are checked against the events first; traces are not.
-///
+/// First checks chains, sealed ends and derived tables against the events, but not traces.
 /// \param participant  opens only this participant's sessions, if a look at the participant or the
 ///   study permits it; empty: all sessions
-/// \throws StoreError if the study has not been unblinded, or nothing shows this participant
-/// \throws VerificationError if the key does not match the database, the database is inconsistent,
-///   or a session does not agree with its schedule; the message names the session
+/// \throws StoreError if neither the study nor this participant was unblinded
+/// \throws VerificationError, naming the session, if the key does not match the database, the
+///   database is inconsistent, or a session does not agree with its schedule
 [[nodiscard]] Outcomes load_outcomes(const record::StudyStore& store, const study::StudyKey& key,
                                      const std::string& participant = {});
 
-/// The same after a look at only the registered question. Show nothing but the result of
-/// question_alone (results.hpp).
-/// \throws as load_outcomes; StoreError if the last look was not of that kind
-[[nodiscard]] Outcomes load_for_question(const record::StudyStore& store,
-                                         const study::StudyKey& key);
+/// Like load_outcomes, but after a look at only the registered question. Show only the result of
+/// registered_answer_only (results.hpp).
+/// \throws as load_outcomes; StoreError if the last look was not at the registered question
+[[nodiscard]] Outcomes load_outcomes_for_question(const record::StudyStore& store,
+                                                  const study::StudyKey& key);
 
 }  // namespace touchtrial::analysis

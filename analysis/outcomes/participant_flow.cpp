@@ -9,20 +9,20 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// The session by which each participant is counted, ordered by session. This is the participant's
-/// last session among the visits that are needed; it replaces all earlier ones of its visit.
+/// The session that counts for each participant, by session number: the participant's last session
+/// among the needed visits.
 std::map<int, const record::SessionRow*> counting_sessions(
     const std::vector<record::SessionRow>& rows, int visits_needed) {
-  std::map<std::string, const record::SessionRow*> last;
+  std::map<std::string, const record::SessionRow*> last_sessions;
   for (const record::SessionRow& row : rows) {
-    if (row.visit <= visits_needed) last[row.participant] = &row;
+    if (row.visit <= visits_needed) last_sessions[row.participant] = &row;
   }
-  std::map<int, const record::SessionRow*> standing;
-  for (const auto& [participant, row] : last) standing[row->session] = row;
-  return standing;
+  std::map<int, const record::SessionRow*> sessions;
+  for (const auto& [participant, row] : last_sessions) sessions[row->session] = row;
+  return sessions;
 }
 
-bool unseen_after_interim_look(const record::SessionRow& row, const record::StudyState& state) {
+bool is_unseen_after_interim_look(const record::SessionRow& row, const record::StudyState& state) {
   return (state.unblinded || state.question) && !state.reports(row.session);
 }
 
@@ -35,8 +35,8 @@ int& flow_counter(const record::SessionRow& row, const record::StudyCommitment& 
   if (row.state == record::SessionState::stopped) return flow.stopped;
   if (row.state == record::SessionState::open) return flow.open;
   if (!session_counts(row, commitment)) return flow.other_kind;
-  if (row.visit < visits_needed) return flow.open;  // the next visit is still to come
-  if (unseen_after_interim_look(row, state)) return flow.unseen;
+  if (row.visit < visits_needed) return flow.open;  // further visits are due
+  if (is_unseen_after_interim_look(row, state)) return flow.unseen;
   return flow.analysed;
 }
 
@@ -44,18 +44,19 @@ int& flow_counter(const record::SessionRow& row, const record::StudyCommitment& 
 
 std::set<int> counted_sessions(std::span<const record::SessionRow> rows,
                                const record::StudyCommitment& commitment) {
-  const int needed = prescription_from_json(commitment.configuration).visits_needed;
+  const int visits_needed = prescription_from_json(commitment.configuration).visits_needed;
   std::map<std::pair<std::string, int>, std::set<int>> visits;  // counting visits by participant
-  const auto own = [&](const record::SessionRow& row) -> std::set<int>& {
+  const auto visits_of = [&](const record::SessionRow& row) -> std::set<int>& {
     return visits[{row.participant, row.enrolment}];
   };
   for (const record::SessionRow& row : rows) {
-    if (session_counts(row, commitment) && row.visit <= needed) own(row).insert(row.visit);
+    if (session_counts(row, commitment) && row.visit <= visits_needed)
+      visits_of(row).insert(row.visit);
   }
   std::set<int> counted;
   for (const record::SessionRow& row : rows) {
-    const bool whole = static_cast<int>(own(row).size()) == needed;
-    if (whole && session_counts(row, commitment)) counted.insert(row.session);
+    const bool is_complete = static_cast<int>(visits_of(row).size()) == visits_needed;
+    if (is_complete && session_counts(row, commitment)) counted.insert(row.session);
   }
   return counted;
 }
@@ -68,14 +69,14 @@ ParticipantFlow participant_flow(const std::vector<record::SessionRow>& rows,
   for (const SessionRecord& record : records) {
     reasons[record.row.session] = exclusion_words(record);
   }
-  const int needed = prescription_from_json(commitment.configuration).visits_needed;
+  const int visits_needed = prescription_from_json(commitment.configuration).visits_needed;
   ParticipantFlow flow;
-  for (const auto& [session, row] : counting_sessions(rows, needed)) {
+  for (const auto& [session, row] : counting_sessions(rows, visits_needed)) {
     ++flow.enrolled;
     if (row->withdrawn) ++flow.withdrawn;
-    int& end = flow_counter(*row, commitment, needed, state, flow);
-    ++end;
-    if (&end == &flow.excluded) flow.exclusion_reasons.push_back(reasons[session]);
+    int& counter = flow_counter(*row, commitment, visits_needed, state, flow);
+    ++counter;
+    if (&counter == &flow.excluded) flow.exclusion_reasons.push_back(reasons[session]);
   }
   return flow;
 }

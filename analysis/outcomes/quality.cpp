@@ -23,30 +23,30 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-void add_trial(const record::ServoHealth& trial, ServoQuality& all) {
-  all.lowest_rate_hz =
-      all.trials == 0 ? trial.rate_hz : std::min(all.lowest_rate_hz, trial.rate_hz);
-  all.highest_p99_us = std::max(all.highest_p99_us, trial.lateness_p99_us);
-  all.worst_us = std::max(all.worst_us, trial.lateness_worst_us);
-  all.lost += trial.lost;
-  ++all.trials;
+void add_trial(const record::ServoHealth& trial, ServoQuality& quality) {
+  quality.lowest_rate_hz =
+      quality.trials == 0 ? trial.rate_hz : std::min(quality.lowest_rate_hz, trial.rate_hz);
+  quality.highest_p99_us = std::max(quality.highest_p99_us, trial.lateness_p99_us);
+  quality.worst_us = std::max(quality.worst_us, trial.lateness_worst_us);
+  quality.lost += trial.lost;
+  ++quality.trials;
 }
 
 std::optional<ServoQuality> servo_quality(const Collection& collection) {
   if (collection.servo_trials.empty()) return std::nullopt;
-  ServoQuality all;
+  ServoQuality quality;
   std::vector<double> p99_us;
   for (const ServoTrial& trial : collection.servo_trials) {
-    add_trial(trial.health, all);
+    add_trial(trial.health, quality);
     p99_us.push_back(trial.health.lateness_p99_us);
   }
-  all.median_p99_us = median_of(std::move(p99_us));
+  quality.median_p99_us = median_of(std::move(p99_us));
   std::set<std::string> scheduling;
   for (const SessionRecord& session : collection.sessions) {
     if (session.station) scheduling.insert(session.station->scheduling);
   }
-  all.scheduling.assign(scheduling.begin(), scheduling.end());
-  return all;
+  quality.scheduling.assign(scheduling.begin(), scheduling.end());
+  return quality;
 }
 
 void count_session(const record::SessionRow& session, const record::StudyCommitment& commitment,
@@ -96,7 +96,7 @@ void put_real_time(nlohmann::ordered_json& object, const ServoQuality& servo) {
   object["scheduling"] = servo.scheduling;
 }
 
-/// For each session, the number of trials in which the hand was outside each window.
+/// For each session, the numbers of trials in which the hand left each window.
 nlohmann::ordered_json hands_json(const Collection& collection) {
   auto hands = nlohmann::ordered_json::array();
   for (const SessionRecord& session : collection.sessions) {

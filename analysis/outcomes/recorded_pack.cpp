@@ -10,7 +10,7 @@ std::optional<engine::Pack> pack_of(const record::StudyStore& store, const study
     engine::Pack pack(folder.empty() ? key.pack_folder : folder);
     if (pack.digest() == store.commitment().pack) return pack;
   } catch (const FileError&) {
-    // A pack that cannot be read counts as none.
+    // An unreadable pack counts as missing.
   }
   return std::nullopt;
 }

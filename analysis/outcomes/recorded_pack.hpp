@@ -1,4 +1,4 @@
-/// \file Finds the pack with which a database was recorded.
+/// \file Finds the pack that a database was recorded with.
 #pragma once
 
 #include "engine/pack/pack.hpp"
@@ -10,9 +10,9 @@
 
 namespace touchtrial::analysis {
 
-/// The pack with which the database was recorded.
-/// \param folder  empty: the path in the key
-/// \return nothing if there is no pack, or the pack is a different one
+/// Opens the pack that the database was recorded with.
+/// \param folder  the pack's folder; empty: the path in the key
+/// \return nothing if the pack is unreadable or a different pack
 [[nodiscard]] std::optional<engine::Pack> pack_of(const record::StudyStore& store,
                                                   const study::StudyKey& key,
                                                   const std::filesystem::path& folder = {});

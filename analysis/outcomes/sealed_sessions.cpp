@@ -24,12 +24,12 @@
 namespace touchtrial::analysis {
 namespace {
 
-std::string place_of(const record::Event& event) {
-  return fmt::format("{}, event {}", record::chain_named(event.session), event.sequence);
+std::string event_name(const record::Event& event) {
+  return fmt::format("{}, event {}", record::chain_name(event.session), event.sequence);
 }
 
-[[noreturn]] void refuse_sealed(const record::Event& event) {
-  throw VerificationError(place_of(event) +
+[[noreturn]] void throw_does_not_open(const record::Event& event) {
+  throw VerificationError(event_name(event) +
                           ": the sealed part does not open: the event is damaged, or was rewritten "
                           "without the key; restore a backup of the database [does-not-open]");
 }
@@ -37,17 +37,16 @@ std::string place_of(const record::Event& event) {
 /// Calls `visit` with an opened event and its secret text, if its session has a key.
 template <typename Visit>
 void read_secret(const record::Event& stored, const SessionKeys& keys, Visit visit) {
-  const auto own = keys.find(stored.session);
-  if (own == keys.end() || !own->second.participant) return;
-  const auto [event, secret] = whole_event(stored, *own->second.participant);
+  const auto key = keys.find(stored.session);
+  if (key == keys.end() || !key->second.participant) return;
+  const auto [event, secret] = open_event(stored, *key->second.participant);
   try {
     visit(event, secret);
   } catch (const StoreError& error) {
-    throw VerificationError(place_of(event) + ": " + error.what());
+    throw VerificationError(event_name(event) + ": " + error.what());
   }
 }
 
-/// The same for each event of a kind.
 template <typename Visit>
 void for_each_secret(const StudyEvents& events, const SessionKeys& keys, record::EventKind kind,
                      Visit visit) {
@@ -61,13 +60,13 @@ struct OpenedTrials {
   Measures measures;
   std::exception_ptr fault;
 
-  /// Stores an error instead of throwing it, so that the first session's error is reported
+  /// Stores an error instead of throwing it, so that the first session's error is reported,
   /// whichever thread finishes first.
-  /// \param measured  whether measures are wanted
-  void open(std::vector<record::Event> events, const SecretKey& own, bool measured) noexcept {
+  /// \param with_measures  also reads measures
+  void open(std::vector<record::Event> events, const SecretKey& key, bool with_measures) noexcept {
     try {
-      const record::EventOpener opener(own);
-      for (record::Event& event : events) add(event, opener, measured);
+      const record::EventOpener opener(key);
+      for (record::Event& event : events) add(event, opener, with_measures);
     } catch (const StoreError& error) {
       fault = std::make_exception_ptr(VerificationError(error.what()));
     } catch (...) {
@@ -75,18 +74,18 @@ struct OpenedTrials {
     }
   }
 
-  /// Appends the trials to those of earlier sessions.
-  void move_to(std::vector<record::TrialRow>& trials, Measures* all) {
+  /// Appends the trials to the trials of earlier sessions.
+  void move_to(std::vector<record::TrialRow>& trials, Measures* all_measures) {
     if (fault) std::rethrow_exception(fault);
     for (const auto& [id, row] : rows.trials) trials.push_back(row);
-    if (all != nullptr) all->merge(measures);
+    if (all_measures != nullptr) all_measures->merge(measures);
     rows = {};
   }
 
  private:
-  void add(record::Event& event, const record::EventOpener& opener, bool measured) {
+  void add(record::Event& event, const record::EventOpener& opener, bool with_measures) {
     const auto opened = opener(event);
-    if (!opened) refuse_sealed(event);
+    if (!opened) throw_does_not_open(event);
     event.at = opened->at;
     event.sealed.clear();
     if (event.kind != record::EventKind::trace_stored) {
@@ -96,7 +95,7 @@ struct OpenedTrials {
       return record::from_parts<record::TraceBody>(opened->body);
     });
     record::fold(rows, event, body);
-    if (!measured) return;
+    if (!with_measures) return;
     measures.insert_or_assign({event.session, body.trial},
                               record::measures_from_json(opened->secret));
   }
@@ -112,23 +111,23 @@ std::optional<SecretKey> unwrapped_key(const std::optional<Bytes>& wrapped,
                     "restore a backup of the database",
                     session.session));
   }
-  const auto own = record::unwrap_participant_key(investigator, session.own_session, *wrapped);
-  if (!own) {
+  const auto key = record::unwrap_participant_key(investigator, session.own_session, *wrapped);
+  if (!key) {
     throw VerificationError(
         fmt::format("session {}: the participant's key does not open with this study key; "
                     "restore a backup of the database",
                     session.session));
   }
-  return own;
+  return key;
 }
 
 record::PersonKeys unwrapped_keys(const record::WrappedKeys& wrapped, const BoxKeys& investigator,
                                   const record::SessionRow& session) {
-  record::PersonKeys own{.participant = unwrapped_key(wrapped.participant, investigator, session),
-                         .safety = {}};
-  if (!wrapped.safety) return own;
-  own.safety = record::unwrap_safety_key(investigator, session.own_session, *wrapped.safety);
-  if (own.safety) return own;
+  record::PersonKeys keys{.participant = unwrapped_key(wrapped.participant, investigator, session),
+                          .safety = {}};
+  if (!wrapped.safety) return keys;
+  keys.safety = record::unwrap_safety_key(investigator, session.own_session, *wrapped.safety);
+  if (keys.safety) return keys;
   throw VerificationError(
       fmt::format("session {}: the safety key does not open with this study key; restore a backup "
                   "of the database",
@@ -179,54 +178,55 @@ SessionKeys person_keys(const record::StudyStore& store, const study::StudyKey& 
   return all;
 }
 
-record::OpenedEvent whole_event(const record::Event& event, const SecretKey& own) {
-  std::optional<record::OpenedEvent> opened = record::opened_event(event, own);
-  if (!opened) refuse_sealed(event);
+record::OpenedEvent open_event(const record::Event& event, const SecretKey& key) {
+  std::optional<record::OpenedEvent> opened = record::opened_event(event, key);
+  if (!opened) throw_does_not_open(event);
   return *std::move(opened);
 }
 
 record::Event readable_event(const record::Event& event, const record::SessionRow& row,
                              const record::PersonKeys& keys) {
   if (event.sealed.empty()) return event;
-  if (!record::opener_of(event, keys)) return event;
+  if (!record::opening_key(event, keys)) return event;
   std::optional<record::Event> opened;
   if (event.session <= 0) {
     opened = record::opened_person_text(event, row.own_session, keys);
   } else if (keys.participant) {
-    return whole_event(event, *keys.participant).event;
+    return open_event(event, *keys.participant).event;
   } else if (auto safety = record::opened_safety_event(event, *keys.safety)) {
     opened = std::move(safety->event);
   }
-  if (!opened) refuse_sealed(event);
+  if (!opened) throw_does_not_open(event);
   return *std::move(opened);
 }
 
 std::vector<record::TrialRow> open_trials(const record::StudyStore& store,
                                           const SessionKeys& keys) {
   std::vector<record::TrialRow> trials;
-  for (const auto& [session, own] : keys) {
-    if (!own.participant) continue;
+  for (const auto& [session, person] : keys) {
+    if (!person.participant) continue;
     OpenedTrials opened;
-    opened.open(store.events(session), *own.participant, /*measured=*/false);
+    opened.open(store.events(session), *person.participant, /*with_measures=*/false);
     opened.move_to(trials, nullptr);
   }
   return trials;
 }
 
-/// One session, read by one of several threads.
+/// One session; each is read by one thread.
 struct OpenedSessions::Session {
   record::SessionRow row;
   record::WrappedKeys wrapped;
-  record::PersonKeys own;
-  std::vector<record::Event> kept;
+  record::PersonKeys keys;
+  std::vector<record::Event> kept_events;  ///< see StudyEvents::is_kept
   OpenedTrials trials;
   std::exception_ptr fault;  ///< an error from opening the key
 
   void read(const BoxKeys& investigator, std::vector<record::Event> events) noexcept {
     try {
-      own = unwrapped_keys(wrapped, investigator, row);
-      std::ranges::copy_if(events, std::back_inserter(kept), StudyEvents::is_kept);
-      if (own.participant) trials.open(std::move(events), *own.participant, /*measured=*/true);
+      keys = unwrapped_keys(wrapped, investigator, row);
+      std::ranges::copy_if(events, std::back_inserter(kept_events), StudyEvents::is_kept);
+      if (keys.participant)
+        trials.open(std::move(events), *keys.participant, /*with_measures=*/true);
     } catch (...) {
       fault = std::current_exception();
     }
@@ -250,18 +250,18 @@ OpenedSessions::OpenedSessions(const record::StudyStore& store, const study::Stu
                             "; no outcomes are shown, see `touchtrial verify` and restore the "
                             "database from a backup");
   }
-  EventsOfSessions kept;
+  EventsOfSessions kept_events;
   for (auto& [number, session] : sessions_) {
     if (session.fault) std::rethrow_exception(session.fault);
-    keys_.emplace(number, session.own);
-    kept.emplace(number, std::move(session.kept));
+    keys_.emplace(number, session.keys);
+    kept_events.emplace(number, std::move(session.kept_events));
   }
-  events_ = StudyEvents(store, std::move(kept));
+  events_ = StudyEvents(store, std::move(kept_events));
 }
 
 OpenedSessions::~OpenedSessions() = default;
 
-std::vector<record::TrialRow> OpenedSessions::take_trials(Measures& measures) {
+std::vector<record::TrialRow> OpenedSessions::release_trials(Measures& measures) {
   std::vector<record::TrialRow> trials;
   for (auto& [number, session] : sessions_) session.trials.move_to(trials, &measures);
   return trials;
@@ -271,10 +271,10 @@ void require_sealed_ends(const StudyEvents& events, const SessionKeys& keys) {
   for_each_secret(
       events, keys, record::EventKind::closed,
       [&](const record::Event& event, const std::string& text) {
-        const record::ChainEnd before{.length = event.sequence, .head = event.previous};
-        if (record::from_json<record::ChainEnd>(text) == before) return;
+        const record::ChainEnd end{.length = event.sequence, .head = event.previous};
+        if (record::from_json<record::ChainEnd>(text) == end) return;
         throw VerificationError(
-            place_of(event) +
+            event_name(event) +
             ": the chain does not match its sealed end: it was rewritten without the key; "
             "restore a backup of the database");
       });
@@ -282,9 +282,9 @@ void require_sealed_ends(const StudyEvents& events, const SessionKeys& keys) {
 
 record::Trace open_trace(const std::optional<record::SealedTrace>& sealed,
                          const record::TrialRow& trial, const SessionKeys& keys) {
-  const std::optional<SecretKey>& own = keys.at(trial.session).participant;
-  if (sealed && own) {
-    if (auto trace = record::unsealed_trace(*sealed, *own)) return *std::move(trace);
+  const std::optional<SecretKey>& key = keys.at(trial.session).participant;
+  if (sealed && key) {
+    if (auto trace = record::unsealed_trace(*sealed, *key)) return *std::move(trace);
   }
   throw VerificationError(fmt::format(
       "session {}, trial {}: its trace is missing or does not open; run `touchtrial verify` and "
@@ -297,20 +297,21 @@ std::map<int, study::Schedule> open_schedules(const StudyEvents& events, const s
   std::vector<record::Event> openings;
   events.for_each_of(std::to_array({record::EventKind::opened}),
                      [&](const record::Event& event) { openings.push_back(event); });
-  std::vector<std::optional<study::Schedule>> opened(openings.size());
-  all_in_parallel(openings.size(), [&](std::size_t i) {
+  std::vector<std::optional<study::Schedule>> opened_schedules(openings.size());
+  run_all_in_parallel(openings.size(), [&](std::size_t i) {
     read_secret(openings[i], keys, [&](const record::Event&, const std::string& text) {
-      opened[i] = study::schedule_from_json(text, key);
+      opened_schedules[i] = study::schedule_from_json(text, key);
     });
   });
   std::map<int, study::Schedule> schedules;
   for (std::size_t i = 0; i < openings.size(); ++i) {
-    if (opened[i]) schedules.insert_or_assign(openings[i].session, *std::move(opened[i]));
+    if (opened_schedules[i])
+      schedules.insert_or_assign(openings[i].session, *std::move(opened_schedules[i]));
   }
   const auto add_block = [&](const record::Event& event, const std::string& text) {
-    std::vector<study::Trial>& all = schedules[event.session].trials;
+    std::vector<study::Trial>& trials = schedules[event.session].trials;
     const std::vector<study::Trial> block = block_from_json(text, key);
-    all.insert(all.end(), block.begin(), block.end());
+    trials.insert(trials.end(), block.begin(), block.end());
   };
   for_each_secret(events, keys, record::EventKind::block_restarted, add_block);
   return schedules;

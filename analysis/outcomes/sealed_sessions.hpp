@@ -20,33 +20,32 @@ namespace touchtrial::analysis {
 /// \throws VerificationError, naming the difference, if it was not
 void require_key_of(const record::StudyStore& store, const study::StudyKey& key);
 
-/// The key under which a participant's payloads are encrypted.
-/// \return the key, or nothing if it was erased
-/// \throws VerificationError if the participant's key is missing without a withdrawal, or does not
-///   open
+/// The key that encrypts a participant's payloads.
+/// \return nothing if the key was erased
+/// \throws VerificationError if the key is missing although nobody withdrew, or does not open
 [[nodiscard]] std::optional<SecretKey> participant_key(const record::StudyStore& store,
                                                        const study::StudyKey& key,
                                                        const record::SessionRow& session);
 
-/// The keys of a session that have not been erased.
+/// The unerased keys of a session.
 /// \throws VerificationError as participant_key does, for either key
 [[nodiscard]] record::PersonKeys person_keys(const record::StudyStore& store,
                                              const study::StudyKey& key,
                                              const record::SessionRow& session);
 
-/// The same for every session. Keys are unwrapped once and shared by all readers of a study.
+/// The unerased keys by session. They are unwrapped once and shared by all readers of a study.
 using SessionKeys = std::map<int, record::PersonKeys>;
-/// \throws the same
+/// \throws VerificationError as participant_key does
 [[nodiscard]] SessionKeys person_keys(const record::StudyStore& store, const study::StudyKey& key);
 
-/// A session's event as it was recorded.
-/// \param own  the participant's key
+/// Opens a session's event.
+/// \param key  the participant's key
 /// \throws VerificationError, naming the event, if it does not open
-[[nodiscard]] record::OpenedEvent whole_event(const record::Event& event, const SecretKey& own);
-/// The same with any remaining key, for an event of any chain.
-/// \param row  of the session that the event is about
-/// \return the event as it is stored, if its key was erased
-/// \throws the same
+[[nodiscard]] record::OpenedEvent open_event(const record::Event& event, const SecretKey& key);
+/// Opens an event of any chain with any remaining key.
+/// \param row  the session that the event is about
+/// \return the stored event if its key was erased
+/// \throws VerificationError, naming the event, if it does not open
 [[nodiscard]] record::Event readable_event(const record::Event& event,
                                            const record::SessionRow& row,
                                            const record::PersonKeys& keys);
@@ -54,16 +53,18 @@ using SessionKeys = std::map<int, record::PersonKeys>;
 /// Measures by session and number of the trial.
 using Measures = std::map<std::pair<int, int>, record::TrialMeasures>;
 
-/// The trials of all sessions that are not erased, with answers and times, by session and trial.
-/// \throws VerificationError, naming the event, if one does not open or cannot follow those before
+/// The trials of all unerased sessions, with answers and times, by session and trial.
+/// \throws VerificationError, naming the event, if an event does not open or contradicts earlier
+///   events
 [[nodiscard]] std::vector<record::TrialRow> open_trials(const record::StudyStore& store,
                                                         const SessionKeys& keys);
 
-/// A study with its key. Every event is read, checked and opened once, in parallel over sessions.
+/// A study opened with its key. Reads, checks and opens every event once, in parallel over
+/// sessions.
 class OpenedSessions {
  public:
   /// \throws VerificationError if chains or derived tables are damaged (traces are not checked), or
-  ///   as person_keys
+  ///   as person_keys does
   OpenedSessions(const record::StudyStore& store, const study::StudyKey& key);
   ~OpenedSessions();
   OpenedSessions(const OpenedSessions&) = delete;
@@ -72,10 +73,10 @@ class OpenedSessions {
   [[nodiscard]] const SessionKeys& keys() const noexcept { return keys_; }
   /// The kept events (StudyEvents::is_kept), as stored.
   [[nodiscard]] const StudyEvents& events() const noexcept { return events_; }
-  /// As open_trials. Call at most once.
-  /// \param measures  receives the measures of all trials with a trace; for a repeated trial, of
-  ///   the last presentation
-  [[nodiscard]] std::vector<record::TrialRow> take_trials(Measures& measures);
+  /// Like open_trials. Call at most once.
+  /// \param measures  receives the measures of all trials with a trace; for a repeated trial, the
+  ///   measures of the last presentation
+  [[nodiscard]] std::vector<record::TrialRow> release_trials(Measures& measures);
 
  private:
   struct Session;
@@ -85,8 +86,8 @@ class OpenedSessions {
   StudyEvents events_;
 };
 
-/// Compares the chain of every ended session that is not erased with its sealed end. Without the
-/// key a chain can be rebuilt, but its end cannot be sealed.
+/// Compares every ended, unerased session's chain with its sealed end. Without the key, a chain can
+/// be rebuilt, but its end cannot be sealed.
 /// \throws VerificationError, naming the session, if a sealed end belongs to another chain
 void require_sealed_ends(const StudyEvents& events, const SessionKeys& keys);
 
@@ -96,8 +97,8 @@ void require_sealed_ends(const StudyEvents& events, const SessionKeys& keys);
 [[nodiscard]] record::Trace open_trace(const std::optional<record::SealedTrace>& sealed,
                                        const record::TrialRow& trial, const SessionKeys& keys);
 
-/// Schedules and layouts of all sessions that are not erased, by session. Restarted blocks, in
-/// their new order, follow the schedule with which the session began.
+/// Schedules and layouts of all unerased sessions, by session. Restarted blocks, in their new
+/// order, follow the initial schedule.
 /// \throws VerificationError, naming the session, if a schedule does not open or does not belong to
 ///   this key
 [[nodiscard]] std::map<int, study::Schedule> open_schedules(const StudyEvents& events,

@@ -8,7 +8,7 @@ namespace touchtrial::analysis {
 
 namespace {
 
-/// Whether reports use this kind only to open trials.
+/// Whether reports need events of this kind only to open trials.
 bool is_trial_kind(record::EventKind kind) {
   switch (kind) {
     case record::EventKind::presented:

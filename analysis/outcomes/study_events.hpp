@@ -11,22 +11,22 @@
 
 namespace touchtrial::analysis {
 
-/// Events by session, each session's in order.
+/// Each session's events in order, by session.
 using EventsOfSessions = std::map<int, std::vector<record::Event>>;
 
-/// Most events record presentations, answers and traces, which a report reads once while it checks
-/// their chains (OpenedSessions). All other events of a session are few and can be kept in memory.
+/// Source of events by kind. Most events record presentations, answers and traces, which a report
+/// reads once while it checks chains (OpenedSessions). The few other events can be kept in memory.
 class StudyEvents {
  public:
   /// Reads the database each time.
-  StudyEvents(const record::StudyStore& store) : store_(&store) {}  // NOLINT: stands for its events
+  StudyEvents(const record::StudyStore& store) : store_(&store) {}  // NOLINT: implicit conversion
   /// \param kept  all events for which is_kept is true
   StudyEvents(const record::StudyStore& store, EventsOfSessions kept)
       : store_(&store), kept_(std::move(kept)) {}
 
   /// A trace-stored event is kept only if it has servo timing.
   [[nodiscard]] static bool is_kept(const record::Event& event);
-  /// A cheap test: most traces come from simulated sessions and need not be parsed.
+  /// A cheap test that avoids parsing; traces of simulated sessions have no servo timing.
   [[nodiscard]] static bool has_servo(const record::Event& trace_stored);
 
   [[nodiscard]] const record::StudyStore& store() const noexcept { return *store_; }

@@ -24,17 +24,17 @@ struct Samples {
   std::vector<double> saturated;
 };
 
-void add(const TrialOutcome& trial, Samples& samples) {
-  if (const auto taken = trial.row.reaction_time()) {
-    samples.answer_s.push_back(std::chrono::duration<double>(*taken).count());
+void add_samples(const TrialOutcome& trial, Samples& samples) {
+  if (const auto time = trial.row.reaction_time()) {
+    samples.answer_s.push_back(std::chrono::duration<double>(*time).count());
   }
   if (!trial.measures || !(trial.measures->contact_s > 0.0)) return;
-  const record::TrialMeasures& felt = *trial.measures;
-  samples.contact_s.push_back(felt.contact_s);
-  samples.path_mm.push_back(felt.path_mm);
-  samples.speed_mm_s.push_back(felt.path_mm / felt.contact_s);
-  samples.force_n.push_back(felt.force_rms_n);
-  samples.saturated.push_back(felt.saturated_share);
+  const record::TrialMeasures& measures = *trial.measures;
+  samples.contact_s.push_back(measures.contact_s);
+  samples.path_mm.push_back(measures.path_mm);
+  samples.speed_mm_s.push_back(measures.path_mm / measures.contact_s);
+  samples.force_n.push_back(measures.force_rms_n);
+  samples.saturated.push_back(measures.saturated_share);
 }
 
 std::vector<Explorations> explorations_of(const Outcomes& outcomes) {
@@ -46,7 +46,7 @@ std::vector<Explorations> explorations_of(const Outcomes& outcomes) {
     if (!trial.counted || method >= all.size()) continue;
     ++all[method].trials;
     if (!trial.response && !trial.row.answer) ++all[method].without_response;
-    add(trial, samples[method]);
+    add_samples(trial, samples[method]);
   }
   for (std::size_t i = 0; i < all.size(); ++i) {
     all[i].answer_s = quartiles(std::move(samples[i].answer_s));
@@ -131,7 +131,7 @@ StudyHead head_of(const Outcomes& outcomes) {
   head.registration = outcomes.design.registration;
   head.explorations = explorations_of(outcomes);
   head.demographics = outcomes.demographics;
-  head.closing_answers = summaries_of(outcomes);
+  head.closing_answers = question_summaries(outcomes);
   head.looks = outcomes.look_record.looks;
   head.departures = departures_of(outcomes);
   head.course = course_of(outcomes, head.participants);

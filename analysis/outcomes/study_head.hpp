@@ -1,4 +1,4 @@
-/// \file The part that the reports of all protocols share.
+/// \file The part common to the reports of all protocols.
 #pragma once
 
 #include "analysis/outcomes/collection.hpp"
@@ -13,8 +13,8 @@
 
 namespace touchtrial::analysis {
 
-/// How hands explored the counted trials of one method, with equal weight for each trial. Contact,
-/// path, force and speed are from trials with a trace that touched the plane.
+/// How hands explored in the counted trials of one method, with equal weight for each trial.
+/// Contact, path, force and speed come from traces that touched the plane.
 struct Explorations {
   std::string method;
   int trials = 0;
@@ -32,15 +32,15 @@ struct StudyHead {
   std::string protocol;
   bool simulated = false;
   bool pilot = false;
-  int participants = 0;  ///< participants with a session that counts
-  int trials = 0;        ///< trials that count
+  int participants = 0;  ///< participants with a counted session
+  int trials = 0;        ///< counted trials
   std::vector<std::string> classes;
   Collection collection;                           ///< how it was collected
   record::StudyState state{};                      ///< unblinded; an interim look if not closed
   study::Registration registration;                ///< the registration deposited before collection
-  std::vector<std::string> warnings;               ///< ways to misread the numbers
-  std::vector<Explorations> explorations{};        ///< of each method, in the order of Outcomes
-  std::vector<Characteristic> demographics{};      ///< of the participants who count, in bands
+  std::vector<std::string> warnings;               ///< cautions about reading the numbers
+  std::vector<Explorations> explorations{};        ///< by method, in the order of Outcomes
+  std::vector<Characteristic> demographics{};      ///< of counted participants, in bands
   std::vector<QuestionSummary> closing_answers{};  ///< answers to closing questions
   std::vector<Look> looks{};                       ///< all looks at outcomes
   std::vector<std::string> departures{};           ///< departures_of
@@ -52,10 +52,9 @@ struct StudyHead {
 /// Fills in everything except the warnings, `primary` and `prevalence`.
 [[nodiscard]] StudyHead head_of(const Outcomes& outcomes);
 
-/// The JSON object of a report: the head's members, the protocol's own members, then warnings,
-/// registration, collection, and the registered question with its answer. Indented, ending with a
-/// line feed.
-///
+/// The JSON object of a report, indented, ending with a line feed: the head's members, the
+/// protocol's members, then warnings, registration, collection, and the registered question with
+/// its answer.
 /// \param members  the protocol's members, as a JSON object
 [[nodiscard]] std::string framed_json(const StudyHead& head, const std::string& members);
 

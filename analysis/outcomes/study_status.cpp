@@ -21,7 +21,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-std::string standing_of(const record::SessionRow& row) {
+std::string state_of_session(const record::SessionRow& row) {
   if (row.erased) return "erased";
   if (!row.replaced_by.empty()) return "replaced";
   if (row.excluded) return "excluded";
@@ -32,32 +32,32 @@ std::string standing_of(const record::SessionRow& row) {
 
 using LastConsents = std::map<std::string, std::string>;
 
-PersonStatus of_session(const SessionRecord& record, const record::StudyCommitment& commitment,
-                        const LastConsents& consents) {
+PersonStatus person_status(const SessionRecord& record, const record::StudyCommitment& commitment,
+                           const LastConsents& consents) {
   const record::SessionRow& row = record.row;
-  PersonStatus one;
-  one.participant = row.participant;
-  one.session = row.session;
-  one.enrolment = row.enrolment;
-  one.visit = row.visit;
-  one.station = row.station;
-  one.group = record.group;
-  one.state = standing_of(row);
-  one.counts = session_counts(row, commitment);
-  one.can_resume = row.can_resume();
-  one.opened_utc = record.opened_utc;
-  one.device = row.device;
+  PersonStatus person;
+  person.participant = row.participant;
+  person.session = row.session;
+  person.enrolment = row.enrolment;
+  person.visit = row.visit;
+  person.station = row.station;
+  person.group = record.group;
+  person.state = state_of_session(row);
+  person.counts = session_counts(row, commitment);
+  person.can_resume = row.can_resume();
+  person.opened_utc = record.opened_utc;
+  person.device = row.device;
   if (record.station) {
-    one.was_felt = !record.station->visual;
-    one.certificate = record.station->calibration;
+    person.was_felt = !record.station->visual;
+    person.certificate = record.station->calibration;
   }
   if (std::ranges::count(record.deviations, "no-certificate", &Deviation::code) > 0) {
-    one.certificate.clear();
+    person.certificate.clear();
   }
-  if (ran_unverified(record)) one.certificate = study::kUnverifiedDevice;
+  if (ran_unverified(record)) person.certificate = study::kUnverifiedDevice;
   const auto consent = consents.find(row.participant);
-  if (consent != consents.end()) one.consent = consent->second;
-  return one;
+  if (consent != consents.end()) person.consent = consent->second;
+  return person;
 }
 
 void add_times_and_answers(const record::StudyStore& store, std::vector<PersonStatus>& people) {
@@ -80,17 +80,17 @@ void add_times_and_answers(const record::StudyStore& store, std::vector<PersonSt
   }
 }
 
-/// Adds replacements and consented participants without a session so far.
-void add_people_to_come(const StatusSources& sources, const LastConsents& consents,
-                        const std::vector<record::SessionRow>& rows,
-                        std::vector<PersonStatus>& people) {
-  std::set<std::string> present;
+/// Adds replacements and consented participants who have no session yet.
+void add_upcoming_people(const StatusSources& sources, const LastConsents& consents,
+                         const std::vector<record::SessionRow>& rows,
+                         std::vector<PersonStatus>& people) {
+  std::set<std::string> listed_participants;
   for (const record::SessionRow& row : rows) {
-    if (row.replaced_by.empty()) present.insert(row.participant);
+    if (row.replaced_by.empty()) listed_participants.insert(row.participant);
   }
   const auto add = [&](const std::string& id, const std::string& in_place_of, int enrolment,
                        int visit) {
-    if (!present.insert(id).second) return;
+    if (!listed_participants.insert(id).second) return;
     PersonStatus one;
     one.participant = id;
     one.visit = visit;
@@ -103,12 +103,12 @@ void add_people_to_come(const StatusSources& sources, const LastConsents& consen
   };
   for (const record::SessionRow& row : rows) {
     if (row.replaced_by.empty()) continue;
-    // A replacement begins with the first visit.
-    const bool is_again = row.replaced_by == row.participant;
+    // A replacement begins with the first visit; a restarted session repeats its visit.
+    const bool is_restart = row.replaced_by == row.participant;
     add(row.replaced_by, row.erased ? "" : row.participant, row.enrolment,
-        is_again ? row.visit : 1);
+        is_restart ? row.visit : 1);
   }
-  for (const record::SessionRow& row : rows) present.insert(row.participant);
+  for (const record::SessionRow& row : rows) listed_participants.insert(row.participant);
   for (const record::PersonalRecord& one : sources.consents) add(one.participant, "", 0, 1);
 }
 
@@ -117,106 +117,107 @@ std::optional<OrderBlocks> order_blocks(const std::vector<record::SessionRow>& r
                                         const StatusSources& sources,
                                         const Prescription& prescription) {
   const int orders = prescription.method_orders;
-  const bool is_only = commitment.station && commitment.station->name == study::kOnlyStation;
-  if (orders < 2 || (!is_only && !sources.station)) return std::nullopt;
+  const bool is_single_station =
+      commitment.station && commitment.station->name == study::kOnlyStation;
+  if (orders < 2 || (!is_single_station && !sources.station)) return std::nullopt;
   // Orders are assigned within each group, and group assignments are sealed.
   if (!prescription.groups.empty()) return std::nullopt;
-  std::map<int, std::set<int>> filled;  // numbers with a session that counts, by block
+  std::map<int, std::set<int>> filled;  // enrolment numbers with a counting session, by block
   for (const record::SessionRow& row : rows) {
-    const std::optional<int> place =
-        is_only ? std::optional(row.enrolment - 1) : sources.station->place_of(row.enrolment);
+    const std::optional<int> place = is_single_station ? std::optional(row.enrolment - 1)
+                                                       : sources.station->place_of(row.enrolment);
     if (!place) continue;
     std::set<int>& numbers = filled[*place / orders];
     if (session_counts(row, commitment)) numbers.insert(row.enrolment);
   }
   OrderBlocks blocks{.orders = orders};
   for (const auto& [block, numbers] : filled) {
-    const int n = static_cast<int>(numbers.size());
-    if (n == orders) {
+    const int filled_numbers = static_cast<int>(numbers.size());
+    if (filled_numbers == orders) {
       ++blocks.complete;
     } else {
-      blocks.open.push_back(n);
+      blocks.open.push_back(filled_numbers);
     }
   }
   return blocks;
 }
 
-template <typename Holds>
-std::vector<std::string> ids_of(const StudyStatus& status, Holds holds) {
+template <typename Condition>
+std::vector<std::string> ids_with(const StudyStatus& status, Condition condition) {
   std::vector<std::string> ids;
   for (const PersonStatus& one : status.people) {
-    if (!one.participant.empty() && holds(one)) ids.push_back(one.participant);
+    if (!one.participant.empty() && condition(one)) ids.push_back(one.participant);
   }
   return ids;
 }
 
-void add_about_people(const StudyStatus& status, const StatusSources& sources,
-                      std::vector<std::string>& left) {
-  const auto say = [&](const std::vector<std::string>& ids, const std::string& what) {
-    if (!ids.empty()) left.push_back(listed(ids, " and ") + ": " + what);
+void add_tasks_about_people(const StudyStatus& status, const StatusSources& sources,
+                            std::vector<std::string>& tasks) {
+  const auto add = [&](const std::vector<std::string>& ids, const std::string& task) {
+    if (!ids.empty()) tasks.push_back(listed(ids, " and ") + ": " + task);
   };
-  say(ids_of(status, [](const PersonStatus& one) { return one.can_resume; }),
+  add(ids_with(status, [](const PersonStatus& one) { return one.can_resume; }),
       "the session is open; resume it, or end it");
   for (const PersonStatus& one : status.people) {
     if (!one.in_place_of.empty() && one.in_place_of != one.participant) {
-      left.push_back(fmt::format("{} replaces {} (enrolment {}) and has no session yet",
-                                 one.participant, one.in_place_of, one.enrolment));
+      tasks.push_back(fmt::format("{} replaces {} (enrolment {}) and has no session yet",
+                                  one.participant, one.in_place_of, one.enrolment));
     }
   }
-  say(ids_of(status,
-             [](const PersonStatus& one) {
-               return one.state == "to come" && one.in_place_of == one.participant;
-             }),
+  add(ids_with(status,
+               [](const PersonStatus& one) {
+                 return one.state == "to come" && one.in_place_of == one.participant;
+               }),
       "the session was restarted and has not begun");
   for (const UpcomingVisit& one : status.upcoming_visits) {
-    left.push_back(fmt::format("{}: visit {} of {} is to come{}{}", one.participant, one.visit,
-                               status.visits, one.from ? ", from " + utc_words(*one.from) : "",
-                               one.until ? " to " + utc_words(*one.until) : ""));
+    tasks.push_back(fmt::format("{}: visit {} of {} is to come{}{}", one.participant, one.visit,
+                                status.visits, one.from ? ", from " + utc_words(*one.from) : "",
+                                one.until ? " to " + utc_words(*one.until) : ""));
   }
   if (status.simulated) return;
-  if (sources.knows_consents) {
-    say(ids_of(
+  if (sources.has_consents) {
+    add(ids_with(
             status,
             [](const PersonStatus& one) { return one.state != "erased" && one.consent.empty(); }),
         "no consent is recorded");
   }
   if (!sources.consent_version.empty()) {
-    say(ids_of(status,
-               [&](const PersonStatus& one) {
-                 return !one.consent.empty() && one.consent != sources.consent_version;
-               }),
+    add(ids_with(status,
+                 [&](const PersonStatus& one) {
+                   return !one.consent.empty() && one.consent != sources.consent_version;
+                 }),
         "consented to a version other than " + sources.consent_version +
             ", which the study requires");
   }
-  say(ids_of(status,
-             [](const PersonStatus& one) {
-               return one.counts && one.was_felt && one.certificate == study::kUnverifiedDevice;
-             }),
+  add(ids_with(status,
+               [](const PersonStatus& one) {
+                 return one.counts && one.was_felt && one.certificate == study::kUnverifiedDevice;
+               }),
       std::string(study::kUnverifiedDevice) + ": the session had no valid device certificate");
-  say(ids_of(status,
-             [](const PersonStatus& one) {
-               return one.counts && one.was_felt && one.certificate.empty();
-             }),
+  add(ids_with(status,
+               [](const PersonStatus& one) {
+                 return one.counts && one.was_felt && one.certificate.empty();
+               }),
       "the session had no valid device certificate");
 }
 
-void add_about_study(const StudyStatus& status, std::vector<std::string>& left) {
+void add_tasks_about_study(const StudyStatus& status, std::vector<std::string>& tasks) {
   const bool is_full = status.planned > 0 && status.complete >= status.planned;
   if (!status.state.closed && status.planned > status.complete) {
-    left.push_back(counted(status.planned - status.complete, "participant") + " to come of " +
-                   std::to_string(status.planned) + " that are planned");
+    tasks.push_back(counted(status.planned - status.complete, "participant") + " to come of " +
+                    std::to_string(status.planned) + " that are planned");
   }
   if (!status.state.closed && is_full) {
-    left.emplace_back(
+    tasks.emplace_back(
         "all planned participants are complete: end collection with `touchtrial close`");
   }
   if (status.state.closed && (!status.state.unblinded || status.state.interim)) {
-    left.emplace_back("collection has ended: `touchtrial unblind` opens the outcomes");
+    tasks.emplace_back("collection has ended: `touchtrial unblind` opens the outcomes");
   }
 }
 
 /// A cell's text; "-" if empty.
-std::string shown_or_dash(const std::string& text) {
+std::string text_or_dash(const std::string& text) {
   return text.empty() ? "-" : text;
 }
 
@@ -237,11 +238,13 @@ std::string orders_sentence(const OrderBlocks& blocks) {
   std::string text =
       fmt::format("orders of methods: {}, assigned in blocks of {} enrolment numbers; {} complete",
                   blocks.orders, blocks.orders, counted(blocks.complete, "block"));
-  for (const int n : blocks.open) text += fmt::format(", one with {} of {}", n, blocks.orders);
+  for (const int filled : blocks.open) {
+    text += fmt::format(", one with {} of {}", filled, blocks.orders);
+  }
   return text;
 }
 
-std::vector<std::string> balance_of(const StudyStatus& status) {
+std::vector<std::string> balance_lines(const StudyStatus& status) {
   std::vector<std::string> lines = status.balance;
   if (status.orders) lines.insert(lines.begin(), orders_sentence(*status.orders));
   return lines;
@@ -254,33 +257,34 @@ std::string people_text(const StudyStatus& status) {
   const bool has_visits = status.visits > 1;
   const bool has_groups = std::ranges::any_of(
       status.people, [](const PersonStatus& one) { return !one.group.empty(); });
-  constexpr std::ptrdiff_t kVisit = 3;
-  if (has_visits) header.insert(header.begin() + kVisit, "visit");
+  constexpr std::ptrdiff_t kVisitColumn = 3;
+  if (has_visits) header.insert(header.begin() + kVisitColumn, "visit");
   if (has_groups) header.emplace_back("group");
   if (status.stations > 0) header.emplace_back("station");
   const std::set<std::string> numbers{"session", "number", "trials", "station"};
-  std::set<std::size_t> left;
+  std::set<std::size_t> left_aligned;
   for (std::size_t i = 0; i < header.size(); ++i) {
-    if (!numbers.contains(header[i])) left.insert(i);
+    if (!numbers.contains(header[i])) left_aligned.insert(i);
   }
-  TextTable table(header, left);
-  constexpr std::size_t kDigits = 12;
+  TextTable table(header, left_aligned);
+  constexpr std::size_t kCertificateDigits = 12;
   for (const PersonStatus& one : status.people) {
-    std::vector<std::string> cells{shown_or_dash(one.participant),
-                                   number_or_dash(one.session),
-                                   number_or_dash(one.enrolment),
-                                   one.state,
-                                   one.session == 0 ? "-" : std::to_string(one.answered),
-                                   minute_of(one.opened_utc),
-                                   shown_or_dash(one.consent),
-                                   shown_or_dash(one.certificate == study::kUnverifiedDevice
-                                                     ? one.certificate
-                                                     : one.certificate.substr(0, kDigits)),
-                                   shown_or_dash(one.device)};
+    std::vector<std::string> cells{
+        text_or_dash(one.participant),
+        number_or_dash(one.session),
+        number_or_dash(one.enrolment),
+        one.state,
+        one.session == 0 ? "-" : std::to_string(one.answered),
+        minute_of(one.opened_utc),
+        text_or_dash(one.consent),
+        text_or_dash(one.certificate == study::kUnverifiedDevice
+                         ? one.certificate
+                         : one.certificate.substr(0, kCertificateDigits)),
+        text_or_dash(one.device)};
     if (has_visits) {
-      cells.insert(cells.begin() + kVisit, fmt::format("{} of {}", one.visit, status.visits));
+      cells.insert(cells.begin() + kVisitColumn, fmt::format("{} of {}", one.visit, status.visits));
     }
-    if (has_groups) cells.push_back(shown_or_dash(one.group));
+    if (has_groups) cells.push_back(text_or_dash(one.group));
     if (status.stations > 0) cells.push_back(number_or_dash(one.station));
     table.add(std::move(cells));
   }
@@ -318,28 +322,28 @@ std::vector<UpcomingVisit> upcoming_visits(const record::StudyStore& store) {
     }
   }
   using Days = std::chrono::duration<double, std::ratio<86'400>>;
-  const auto after = [](std::chrono::nanoseconds at, double days) {
-    return at + std::chrono::ceil<std::chrono::nanoseconds>(Days(days));
+  const auto add_days = [](std::chrono::nanoseconds start, double days) {
+    return start + std::chrono::ceil<std::chrono::nanoseconds>(Days(days));
   };
   std::map<std::string, const record::SessionRow*> last;
   const std::vector<record::SessionRow> rows = store.sessions();
   for (const record::SessionRow& row : rows) {
     if (!row.replaced_by.empty()) continue;
-    const record::SessionRow*& known = last[row.participant];
-    if (known == nullptr || known->visit < row.visit) known = &row;
+    const record::SessionRow*& session = last[row.participant];
+    if (session == nullptr || session->visit < row.visit) session = &row;
   }
   std::vector<UpcomingVisit> visits;
   for (const auto& [participant, row] : last) {
-    const bool may_come = row->state == record::SessionState::completed && !row->excluded &&
-                          !row->withdrawn && row->visit < prescription.visits;
-    if (!may_come) continue;
+    const bool has_next_visit = row->state == record::SessionState::completed && !row->excluded &&
+                                !row->withdrawn && row->visit < prescription.visits;
+    if (!has_next_visit) continue;
     UpcomingVisit& next = visits.emplace_back();
     next.participant = participant;
     next.visit = row->visit + 1;
     if (row->simulated) continue;
-    next.from = after(opened[row->session], prescription.min_days);
+    next.from = add_days(opened[row->session], prescription.min_days);
     if (prescription.max_days) {
-      next.until = after(opened[row->session], *prescription.max_days);
+      next.until = add_days(opened[row->session], *prescription.max_days);
     }
   }
   std::ranges::stable_sort(visits, {}, &UpcomingVisit::from);
@@ -356,10 +360,10 @@ StudyStatus status_before(const std::string& study, const std::string& protocol,
   for (const record::PersonalRecord& one : sources.consents) {
     consents[one.participant] = one.consent_version;
   }
-  add_people_to_come(sources, consents, {}, status.people);
-  status.left.emplace_back("there is no database yet; the first session creates it");
-  add_about_people(status, sources, status.left);
-  add_about_study(status, status.left);
+  add_upcoming_people(sources, consents, {}, status.people);
+  status.tasks.emplace_back("there is no database yet; the first session creates it");
+  add_tasks_about_people(status, sources, status.tasks);
+  add_tasks_about_study(status, status.tasks);
   return status;
 }
 
@@ -381,7 +385,7 @@ StudyStatus status_of(const record::StudyStore& store, const StatusSources& sour
   status.planned = commitment.pilot ? 0 : sources.planned;
   status.visits = collection.prescription.visits;
   for (const SessionRecord& record : collection.sessions) {
-    status.people.push_back(of_session(record, commitment, consents));
+    status.people.push_back(person_status(record, commitment, consents));
   }
   add_times_and_answers(store, status.people);
   const std::set<int> counted = counted_sessions(rows, commitment);
@@ -391,12 +395,12 @@ StudyStatus status_of(const record::StudyStore& store, const StatusSources& sour
   }
   status.complete = static_cast<int>(complete.size());
   if (!status.state.closed && status.stations == 0) {
-    add_people_to_come(sources, consents, rows, status.people);
+    add_upcoming_people(sources, consents, rows, status.people);
   }
   status.orders = order_blocks(rows, commitment, sources, collection.prescription);
   status.upcoming_visits = upcoming_visits(store);
-  add_about_people(status, sources, status.left);
-  add_about_study(status, status.left);
+  add_tasks_about_people(status, sources, status.tasks);
+  add_tasks_about_study(status, status.tasks);
   return status;
 }
 
@@ -409,12 +413,12 @@ std::string status_text(const StudyStatus& status, const std::vector<NextCommand
       status.state.question ? "; a registered look was made" : "", status.pilot ? "; PILOT" : "");
   if (!status.head_fault.empty()) text += "EVENTS ARE MISSING: " + status.head_fault + "\n";
   text += people_text(status);
-  const auto list = [&](const char* title, const std::vector<std::string>& lines) {
+  const auto add_list = [&](const char* title, const std::vector<std::string>& lines) {
     if (!lines.empty()) text += heading(title, status.simulated);
     for (const std::string& line : lines) text += wrapped("  ", line);
   };
-  list("counterbalancing", balance_of(status));
-  list("left to do", status.left);
+  add_list("counterbalancing", balance_lines(status));
+  add_list("left to do", status.tasks);
   if (!next.empty()) text += heading("next", status.simulated);
   for (const NextCommand& one : next) text += "  " + one.what + ":\n    " + one.command + "\n";
   return text;
@@ -447,7 +451,7 @@ std::string status_json(const StudyStatus& status, const std::vector<NextCommand
                         {"begun_blocks", status.orders->open}};
   }
   object["balance"] = status.balance;
-  object["left"] = status.left;
+  object["left"] = status.tasks;
   object["head_fault"] = status.head_fault;
   object["next"] = nlohmann::ordered_json::array();
   for (const NextCommand& one : next) {

@@ -1,4 +1,4 @@
-/// \file Collection status: which participants are done or open, and what is left to do. Uses only
+/// \file Collection status: the participants' sessions and the remaining tasks. Uses only
 /// unencrypted data and reveals nothing about outcomes.
 #pragma once
 
@@ -18,8 +18,8 @@ namespace touchtrial::analysis {
 struct UpcomingVisit {
   std::string participant;
   int visit = 2;
-  /// The window from the study's minimum and maximum days between visits; empty in virtual time.
-  /// `until` is also empty without a maximum.
+  /// The window given by the study's minimum and maximum days between visits; empty in virtual
+  /// time. `until` is also empty without a maximum.
   std::optional<std::chrono::nanoseconds> from{};
   std::optional<std::chrono::nanoseconds> until{};
 
@@ -29,50 +29,49 @@ struct UpcomingVisit {
   }
 };
 
-/// The next visits of all participants, the earliest first; empty if the study has one visit or
-/// accepts no more sessions.
-/// \throws StoreError as prescription_from_json
+/// The next visits of all participants, the earliest first; empty if the study has one visit or is
+/// closed.
+/// \throws StoreError as prescription_from_json does
 [[nodiscard]] std::vector<UpcomingVisit> upcoming_visits(const record::StudyStore& store);
 
-/// Sources of information about a study other than its database.
+/// Information about a study from outside its database.
 struct StatusSources {
   std::vector<record::PersonalRecord> consents{};  ///< as PersonalData::all
-  bool knows_consents = false;                     ///< a personal data file exists
-  int planned = 0;                                 ///< participants; 0: not stated
+  bool has_consents = false;                       ///< whether a personal data file exists
+  int planned = 0;                                 ///< number of participants; 0: not stated
   std::string consent_version{};            ///< version that participants sign; empty: not stated
-  std::optional<study::Station> station{};  ///< the station whose file the database is
+  std::optional<study::Station> station{};  ///< the station that recorded the database
 };
 
-/// One participant with one session, or with none yet.
+/// A participant's session, or a participant without a session.
 struct PersonStatus {
   std::string participant;  ///< empty if the data are erased
   int session = 0;          ///< 0: none yet
-  int enrolment = 0;        ///< 0: not known yet
-  int visit = 1;            ///< of the participant, from 1
-  int station = 0;  ///< from which the session was collected; 0: the file is a station's own
+  int enrolment = 0;        ///< 0: not assigned yet
+  int visit = 1;            ///< from 1
+  int station = 0;          ///< in a collected study, the recording station; otherwise 0
   /// "complete", "open", "stopped", "excluded", "replaced", "withdrawn", "erased" or "to come".
   std::string state;
-  bool counts = false;      ///< a complete session that will be analysed
-  bool can_resume = false;  ///< an open session that can be resumed
-  int answered = 0;         ///< trials, those without a response included
+  bool counts = false;      ///< the session is complete and will be analysed
+  bool can_resume = false;  ///< the session is open and can be resumed
+  int answered = 0;         ///< ended trials, including those without a response
   std::string opened_utc;   ///< ISO 8601; empty in virtual time
-  std::string ended_utc;    ///< likewise; empty if it has not ended
-  std::string consent;      ///< the last version; empty: none is recorded
+  std::string ended_utc;    ///< ISO 8601; empty in virtual time or while the session is open
+  std::string consent;      ///< last signed version; empty: none recorded
   std::string device;
   bool was_felt = false;  ///< felt in real time on a device, not seen on a screen
   /// SHA-256 of the device's certificate, "UNVERIFIED DEVICE", or empty: none.
   std::string certificate;
-  std::string in_place_of;  ///< of a participant to come: who is replaced
+  std::string in_place_of;  ///< the participant whom an upcoming participant replaces
   std::string group;        ///< only if groups are not blinded
 };
 
-/// How the orders of methods are filled. They are assigned in blocks of consecutive enrolment
-/// numbers, each block with every order once. Which number has which order is sealed.
+/// Progress of counterbalancing. Orders of methods are assigned in blocks of consecutive enrolment
+/// numbers, each block with every order once. The order of each number is sealed.
 struct OrderBlocks {
   int orders = 1;           ///< size of a block
-  int complete = 0;         ///< blocks in which every number has a session that counts
-  std::vector<int> open{};  ///< for each block that was begun but is incomplete, how many numbers
-                            ///< have such a session
+  int complete = 0;         ///< blocks in which every number has a counting session
+  std::vector<int> open{};  ///< for each incomplete block, the number of its counting sessions
 };
 
 struct StudyStatus {
@@ -81,37 +80,36 @@ struct StudyStatus {
   record::StudyState state{};
   bool simulated = false;
   bool pilot = false;
-  int stations = 0;  ///< 0: the file is a station's own
-  int planned = 0;   ///< 0: not stated, or a pilot study, which has no plan
-  int visits = 1;    ///< of each participant
-  /// Participants with a counting session for each visit that the study needs.
-  int complete = 0;
-  std::vector<PersonStatus> people{};  ///< sessions by number, then participants to come
+  int stations = 0;  ///< number of collected stations; 0: not a collected study
+  int planned = 0;   ///< planned participants; 0: not stated, or a pilot study
+  int visits = 1;    ///< per participant
+  int complete = 0;  ///< participants with a counting session for each needed visit
+  std::vector<PersonStatus> people{};  ///< sessions by number, then upcoming participants
   std::vector<UpcomingVisit> upcoming_visits{};
-  std::optional<OrderBlocks>
-      orders{};  ///< if orders differ and the file's enrolment numbers are known
-  std::vector<std::string>
-      balance{};  ///< sentences about stations and enrolment numbers, set by the caller
-  std::vector<std::string> left{};  ///< sentences about the remaining work
-  /// What the database is missing according to its head files, or which head files are missing. Set
-  /// by the caller; empty: nothing.
+  /// Empty if all participants have the same order or the file's enrolment numbers are unknown.
+  std::optional<OrderBlocks> orders{};
+  /// Sentences about stations and enrolment numbers, set by the caller.
+  std::vector<std::string> balance{};
+  std::vector<std::string> tasks{};  ///< sentences about the remaining tasks
+  /// Events missing according to head files, or missing head files; set by the caller; empty: no
+  /// fault.
   std::string head_fault{};
 };
 
 [[nodiscard]] StudyStatus status_of(const record::StudyStore& store, const StatusSources& sources);
 
-/// The status before the first session, when there is no database yet: who has consented.
+/// The status before the first session creates the database.
 /// \param study,protocol  names; empty if unknown
 [[nodiscard]] StudyStatus status_before(const std::string& study, const std::string& protocol,
                                         const StatusSources& sources);
 
-/// A command to copy, and what it is for.
+/// A command to copy.
 struct NextCommand {
-  std::string what;
+  std::string what;  ///< purpose of the command
   std::string command;
 };
 
-/// A page for a terminal, ending with a line feed.
+/// Text for a terminal, ending with a line feed.
 [[nodiscard]] std::string status_text(const StudyStatus& status,
                                       const std::vector<NextCommand>& next);
 /// One JSON object, indented, ending with a line feed.

@@ -35,10 +35,10 @@ CellPairs pairs_of(const PublishedPicture& picture) {
 }
 
 template <typename Number>
-double mean_over_cells(const CellPairs& pairs, const Number& number) {
+double mean_over_pairs(const CellPairs& pairs, const Number& number) {
   const double sum =
       std::accumulate(pairs.begin(), pairs.end(), 0.0,
-                      [&](double so_far, const CellPair& pair) { return so_far + number(pair); });
+                      [&](double total, const CellPair& pair) { return total + number(pair); });
   return sum / static_cast<double>(pairs.size());
 }
 
@@ -58,7 +58,7 @@ double disagreement_of(const CellPairs& pairs, double mean, const Number& deviat
   return mean > 0.0 ? 100.0 * (high - low) / mean : 0.0;
 }
 
-bool changes_as_in_text(const CellPair& pair) {
+bool agrees_with_text_in(const CellPair& pair) {
   return pair.after.angular_second_moment > pair.before.angular_second_moment &&
          pair.after.contrast < pair.before.contrast &&
          pair.after.correlation < pair.before.correlation;
@@ -68,34 +68,34 @@ TableSummary summary_of_pairs(const CellPairs& pairs) {
   TableSummary summary;
   const auto before = [](const CellPair& pair) { return deviation_in(pair.before); };
   const auto after = [](const CellPair& pair) { return deviation_in(pair.after); };
-  summary.deviation_before = mean_over_cells(pairs, before);
-  summary.deviation_after = mean_over_cells(pairs, after);
+  summary.deviation_before = mean_over_pairs(pairs, before);
+  summary.deviation_after = mean_over_pairs(pairs, after);
   summary.disagreement_percent = std::max(disagreement_of(pairs, summary.deviation_before, before),
                                           disagreement_of(pairs, summary.deviation_after, after));
-  summary.contrast_ratio = mean_over_cells(pairs, [](const CellPair& pair) {
+  summary.contrast_ratio = mean_over_pairs(pairs, [](const CellPair& pair) {
     return pair.before.contrast > 0.0 ? pair.after.contrast / pair.before.contrast
                                       : std::numeric_limits<double>::quiet_NaN();
   });
   summary.correlation_after =
-      mean_over_cells(pairs, [](const CellPair& pair) { return pair.after.correlation; });
+      mean_over_pairs(pairs, [](const CellPair& pair) { return pair.after.correlation; });
   summary.contrast_rises = std::all_of(pairs.begin(), pairs.end(), [](const CellPair& pair) {
     return pair.after.contrast > pair.before.contrast;
   });
   summary.asm_rises = std::any_of(pairs.begin(), pairs.end(), [](const CellPair& pair) {
     return pair.after.angular_second_moment > pair.before.angular_second_moment;
   });
-  summary.agrees_with_text = std::all_of(pairs.begin(), pairs.end(), changes_as_in_text);
+  summary.agrees_with_text = std::all_of(pairs.begin(), pairs.end(), agrees_with_text_in);
   return summary;
 }
 
 void count_change(CellChanges& changes, double before, double after) {
-  ++changes.of;
+  ++changes.total;
   if (after > before) ++changes.rising;
   if (after < before) ++changes.falling;
 }
 
 template <typename Condition>
-int number_with(const std::vector<MeasuredPicture>& pictures, const Condition& condition) {
+int count_pictures(const std::vector<MeasuredPicture>& pictures, const Condition& condition) {
   return static_cast<int>(std::count_if(pictures.begin(), pictures.end(), condition));
 }
 
@@ -103,14 +103,14 @@ std::string published_orders() {
   return fmt::format("orders {:g} to {:g}", kPublishedLowestOrder, kPublishedHighestOrder);
 }
 
-bool is_in_published_range(double order) {
+bool is_published_order(double order) {
   return order >= kPublishedLowestOrder - kOrderRounding &&
          order <= kPublishedHighestOrder + kOrderRounding;
 }
 
-/// The fixed order whose texture's entropy is nearest to the adaptive one's.
+/// The fixed order whose texture's entropy is nearest to the adaptive texture's.
 double order_of_entropy(const engine::Evaluation& evaluation) {
-  const auto distance = [&](const engine::OrderFigures& one) {
+  const auto distance = [&](const engine::OrderEvaluation& one) {
     return std::abs(one.entropy - evaluation.adaptive.entropy);
   };
   return std::min_element(evaluation.orders.begin(), evaluation.orders.end(),
@@ -118,27 +118,28 @@ double order_of_entropy(const engine::Evaluation& evaluation) {
       ->order;
 }
 
-/// The rms of the lowest order's texture divided by that of the adaptive one; 0 if the latter is
-/// flat.
-double weakest_share(const MeasuredPicture& one) {
+/// The rms of the lowest order's texture divided by the rms of the adaptive texture; 0 if the
+/// adaptive texture is flat.
+double lowest_order_rms_ratio(const MeasuredPicture& one) {
   return one.adaptive.rms_grey > 0.0 ? one.fixed[0].rms_grey / one.adaptive.rms_grey : 0.0;
 }
 
 void add_orders(std::vector<PaperClaim>& claims, const PaperMeasures& measures) {
   const auto& pictures = measures.pictures;
   const int n = static_cast<int>(pictures.size());
-  claims.push_back({"weakest", "Fig. 1",
-                    fmt::format("Of orders {:g} and adaptive, {:g} gives the weakest texture.",
-                                fmt::join(kPaperOrders, ", "), kPaperOrders.front()),
-                    fmt::format("Order {:g} has {} of the adaptive texture's rms.",
-                                kPaperOrders.front(), range_over(pictures, 2, weakest_share)),
-                    number_with(pictures,
-                                [](const MeasuredPicture& one) {
-                                  return one.fixed[0].rms_grey < one.fixed[1].rms_grey &&
-                                         one.fixed[0].rms_grey < one.fixed[2].rms_grey &&
-                                         one.fixed[0].rms_grey < one.adaptive.rms_grey;
-                                }),
-                    n});
+  claims.push_back(
+      {"weakest", "Fig. 1",
+       fmt::format("Of orders {:g} and adaptive, {:g} gives the weakest texture.",
+                   fmt::join(kPaperOrders, ", "), kPaperOrders.front()),
+       fmt::format("Order {:g} has {} of the adaptive texture's rms.", kPaperOrders.front(),
+                   range_over(pictures, 2, lowest_order_rms_ratio)),
+       count_pictures(pictures,
+                      [](const MeasuredPicture& one) {
+                        return one.fixed[0].rms_grey < one.fixed[1].rms_grey &&
+                               one.fixed[0].rms_grey < one.fixed[2].rms_grey &&
+                               one.fixed[0].rms_grey < one.adaptive.rms_grey;
+                      }),
+       n});
   claims.push_back(
       {"fine-lost", "Fig. 1", "Higher orders sharpen large textures and lose small ones.",
        fmt::format(
@@ -149,11 +150,11 @@ void add_orders(std::vector<PaperClaim>& claims, const PaperMeasures& measures) 
            range_over(pictures, 3,
                       [](const MeasuredPicture& one) { return one.fixed.back().fine_share; }),
            kPaperOrders.back()),
-       number_with(pictures,
-                   [](const MeasuredPicture& one) {
-                     return one.fixed[1].fine_share < one.fixed[0].fine_share &&
-                            one.fixed[2].fine_share < one.fixed[1].fine_share;
-                   }),
+       count_pictures(pictures,
+                      [](const MeasuredPicture& one) {
+                        return one.fixed[1].fine_share < one.fixed[0].fine_share &&
+                               one.fixed[2].fine_share < one.fixed[1].fine_share;
+                      }),
        n});
   claims.push_back(
       {"best", "Fig. 1", "The adaptive texture is the best of the four.",
@@ -166,10 +167,10 @@ void add_orders(std::vector<PaperClaim>& claims, const PaperMeasures& measures) 
                                            [](const MeasuredPicture& one) {
                                              return order_of_entropy(one.evaluation);
                                            })),
-                    number_with(pictures,
-                                [](const MeasuredPicture& one) {
-                                  return is_in_published_range(order_of_entropy(one.evaluation));
-                                }),
+                    count_pictures(pictures,
+                                   [](const MeasuredPicture& one) {
+                                     return is_published_order(order_of_entropy(one.evaluation));
+                                   }),
                     n});
   claims.push_back({"likeness-orders", "Fig. 3",
                     "MS-SSIM with the adaptive texture is largest at " + published_orders() + ".",
@@ -182,11 +183,11 @@ void add_orders(std::vector<PaperClaim>& claims, const PaperMeasures& measures) 
                                            [](const MeasuredPicture& one) {
                                              return engine::closest_order(one.evaluation).ms_ssim;
                                            })),
-                    number_with(pictures,
-                                [](const MeasuredPicture& one) {
-                                  return is_in_published_range(
-                                      engine::closest_order(one.evaluation).order);
-                                }),
+                    count_pictures(pictures,
+                                   [](const MeasuredPicture& one) {
+                                     return is_published_order(
+                                         engine::closest_order(one.evaluation).order);
+                                   }),
                     n});
 }
 
@@ -195,30 +196,31 @@ void add_change(std::vector<PaperClaim>& claims, const PaperMeasures& measures, 
   const CellChanges measured = measured_changes(measures, statistic);
   const char* verb = rises ? "rises" : "falls";
   const int agreeing = rises ? measured.rising : measured.falling;
-  std::string in_paper = "The paper does not compute it";
+  std::string published_text = "The paper does not compute it";
   if (statistic.published != nullptr) {
-    const CellChanges theirs = published_changes(statistic);
-    in_paper = fmt::format("It {} in {} of the paper's {} cells", verb,
-                           rises ? theirs.rising : theirs.falling, theirs.of);
+    const CellChanges published = published_changes(statistic);
+    published_text = fmt::format("It {} in {} of the paper's {} cells", verb,
+                                 rises ? published.rising : published.falling, published.total);
   }
-  claims.push_back({std::move(id), "Table 1", statement,
-                    fmt::format("{}, and in {} of {} here.", in_paper, agreeing, measured.of),
-                    agreeing, measured.of});
+  claims.push_back(
+      {std::move(id), "Table 1", statement,
+       fmt::format("{}, and in {} of {} here.", published_text, agreeing, measured.total), agreeing,
+       measured.total});
   if (statistic.published == nullptr) {
-    claims.back().measured =
-        fmt::format("{}; it {} in {} of {} cells here.", in_paper, verb, agreeing, measured.of);
+    claims.back().measured = fmt::format("{}; it {} in {} of {} cells here.", published_text, verb,
+                                         agreeing, measured.total);
   }
 }
 
-/// The widths of the exact intervals of the reported accuracies.
+/// A sentence about the widths of exact intervals of the reported accuracies.
 std::string exact_widths() {
   constexpr int kTrials = kPublishedPeople * kPublishedTrialsOfClass;
   double low = 1.0;
   double high = 0.0;
   for (const int percent : kPublishedPercents) {
-    const Interval exact = clopper_pearson_interval({kTrials, percent * kTrials / 100});
-    low = std::min(low, exact.high - exact.low);
-    high = std::max(high, exact.high - exact.low);
+    const Interval interval = clopper_pearson_interval({kTrials, percent * kTrials / 100});
+    low = std::min(low, interval.high - interval.low);
+    high = std::max(high, interval.high - interval.low);
   }
   return fmt::format(
       "With {} presentations of each, exact 95 % intervals are {:.0f} to {:.0f} points wide, and "
@@ -251,11 +253,11 @@ void add_table(std::vector<PaperClaim>& claims, const PaperMeasures& measures) {
                               [](const MeasuredPicture& one) {
                                 return summary_of_measures(one).contrast_ratio;
                               })),
-       number_with(pictures,
-                   [](const MeasuredPicture& one) {
-                     const TableSummary summary = summary_of_measures(one);
-                     return summary.contrast_rises && !summary.asm_rises;
-                   }),
+       count_pictures(pictures,
+                      [](const MeasuredPicture& one) {
+                        const TableSummary summary = summary_of_measures(one);
+                        return summary.contrast_rises && !summary.asm_rises;
+                      }),
        n});
   claims.push_back(
       {"correlation-level", "Table 1",
@@ -265,21 +267,21 @@ void add_table(std::vector<PaperClaim>& claims, const PaperMeasures& measures) {
                                                [](const MeasuredPicture& one) {
                                                  return summary_of_measures(one).correlation_after;
                                                })),
-       number_with(pictures,
-                   [](const MeasuredPicture& one) {
-                     return summary_of_measures(one).correlation_after >=
-                            published_least_correlation();
-                   }),
+       count_pictures(pictures,
+                      [](const MeasuredPicture& one) {
+                        return summary_of_measures(one).correlation_after >=
+                               published_least_correlation();
+                      }),
        n});
 }
 
 }  // namespace
 
 std::string verdict_of(const PaperClaim& claim) {
-  if (claim.of == 0) return "cannot be tested";
-  if (claim.agreeing == claim.of) return "agrees";
+  if (claim.total == 0) return "cannot be tested";
+  if (claim.agreeing == claim.total) return "agrees";
   if (claim.agreeing == 0) return "differs";
-  return fmt::format("agrees in {} of {}", claim.agreeing, claim.of);
+  return fmt::format("agrees in {} of {}", claim.agreeing, claim.total);
 }
 
 CellChanges published_changes(const PaperStatistic& statistic) {
@@ -309,13 +311,10 @@ Proportion published_roots() {
   Proportion roots;
   const auto count = [&](const PublishedCells& moments, const PublishedCells& entropies) {
     for (std::size_t i = 0; i < moments.size(); ++i) {
-      const double least = std::sqrt(moments[i] - kPublishedAsmRounding);
-      const double most = std::sqrt(moments[i] + kPublishedAsmRounding);
-      ++roots.n;
-      if (entropies[i] >= least - kPublishedEntropyRounding &&
-          entropies[i] <= most + kPublishedEntropyRounding) {
-        ++roots.correct;
-      }
+      const double min_root = std::sqrt(moments[i] - kPublishedAsmRounding);
+      const double max_root = std::sqrt(moments[i] + kPublishedAsmRounding);
+      roots.add(entropies[i] >= min_root - kPublishedEntropyRounding &&
+                entropies[i] <= max_root + kPublishedEntropyRounding);
     }
   };
   for (const PublishedPicture& picture : kPublishedTable) {
@@ -336,11 +335,11 @@ TableSummary summary_of(const engine::GlcmTable& original, const engine::GlcmTab
 }
 
 double published_least_correlation() {
-  double least = 1.0;
+  double smallest = 1.0;
   for (const PublishedPicture& picture : kPublishedTable) {
-    least = std::min(least, summary_of(picture).correlation_after);
+    smallest = std::min(smallest, summary_of(picture).correlation_after);
   }
-  return least;
+  return smallest;
 }
 
 bool is_like_contradiction(const TableSummary& summary) {
@@ -357,9 +356,9 @@ std::string range_over(const std::vector<MeasuredPicture>& pictures, int decimal
     high = std::max(high, number(one));
   }
   if (low > high) return "-";
-  const std::string least = fmt::format("{:.{}f}", low, decimals);
-  const std::string most = fmt::format("{:.{}f}", high, decimals);
-  return least == most ? least : least + " to " + most;
+  const std::string low_text = fmt::format("{:.{}f}", low, decimals);
+  const std::string high_text = fmt::format("{:.{}f}", high, decimals);
+  return low_text == high_text ? low_text : low_text + " to " + high_text;
 }
 
 std::vector<PaperClaim> paper_claims(const PaperMeasures& measures) {

@@ -20,17 +20,17 @@ struct PaperClaim {
   std::string where;      ///< "Fig. 3"
   std::string statement;  ///< the statement, rephrased
   std::string measured;   ///< what was measured
-  int agreeing = 0;
-  int of = 0;  ///< 0 if nothing here can test the statement
+  int agreeing = 0;       ///< pictures or cells that agree
+  int total = 0;          ///< tested pictures or cells; 0 if none can test the statement
 };
 
 /// "agrees", "agrees in 3 of 5", "differs" or "cannot be tested"
 [[nodiscard]] std::string verdict_of(const PaperClaim& claim);
 
-/// A statistic of Table 1, in the paper and here.
+/// A statistic of Table 1, as published and as measured here.
 struct PaperStatistic {
   std::string_view name;
-  PublishedRow PublishedPicture::*published = nullptr;  ///< null: the paper does not have it
+  PublishedRow PublishedPicture::*published = nullptr;  ///< null: not in the paper
   double engine::GlcmStatistics::*measured = nullptr;
   int decimals = 0;
 };
@@ -46,23 +46,23 @@ inline constexpr std::array<PaperStatistic, 5> kPaperStatistics = {
 struct CellChanges {
   int rising = 0;
   int falling = 0;
-  int of = 0;
+  int total = 0;  ///< number of cells
 };
 
-/// \return no cells if the paper does not have the statistic
+/// \return zeros if the paper does not report the statistic
 [[nodiscard]] CellChanges published_changes(const PaperStatistic& statistic);
 [[nodiscard]] CellChanges measured_changes(const PaperMeasures& measures,
                                            const PaperStatistic& statistic);
 
-/// Cells of the paper's "Entropy" that equal the root of its ASM, within the rounding of both.
+/// The number of "Entropy" cells of the paper that equal the root of its ASM, within rounding.
 [[nodiscard]] Proportion published_roots();
 
-/// One picture of Table 1 in four numbers, means over the directions.
+/// A summary of one picture of Table 1; numbers are means over the directions.
 struct TableSummary {
-  double deviation_before = 0.0;  ///< of the grey levels, implied by contrast and correlation
+  double deviation_before = 0.0;  ///< implied_deviation() of grey levels
   double deviation_after = 0.0;
-  /// The largest relative difference, in percent, between the deviations implied by the four
-  /// directions, before or after; small if contrast and correlation are consistent.
+  /// The largest relative difference, in percent, between the deviations that the four directions
+  /// imply, before or after; small if contrast and correlation are consistent.
   double disagreement_percent = 0.0;
   double contrast_ratio = 0.0;  ///< after over before; NaN if there was no contrast
   double correlation_after = 0.0;
@@ -76,7 +76,7 @@ struct TableSummary {
 [[nodiscard]] TableSummary summary_of(const engine::GlcmTable& original,
                                       const engine::GlcmTable& texture);
 
-/// The smallest mean correlation over directions of a texture in the paper's table.
+/// The smallest mean correlation over directions among the textures of the paper's table.
 [[nodiscard]] double published_least_correlation();
 
 /// Whether a texture's table resembles the picture that contradicts the paper's text: contrast
@@ -84,8 +84,8 @@ struct TableSummary {
 /// smallest.
 [[nodiscard]] bool is_like_contradiction(const TableSummary& summary);
 
-/// The smallest and the largest of a number over pictures, for example "0.02 to 0.18"; "-" if none
-/// is finite.
+/// The smallest and the largest value of a number over pictures, for example "0.02 to 0.18"; "-"
+/// without finite values.
 [[nodiscard]] std::string range_over(const std::vector<MeasuredPicture>& pictures, int decimals,
                                      const std::function<double(const MeasuredPicture&)>& number);
 

@@ -21,10 +21,10 @@ namespace touchtrial::analysis {
 namespace {
 
 constexpr std::array<double, 3> kSpreads = {0.0, 0.10, 0.20};
-/// Table 3: presentations per person and method, if four pictures are felt five times each.
-constexpr int kTrialsOfMethod = 4 * kPublishedTrialsOfClass;
+/// Table 3: presentations per person and method if four pictures are felt five times each.
+constexpr int kTrialsPerMethod = 4 * kPublishedTrialsOfClass;
 
-/// Deviations of one picture that differ by less are equal up to the paper's rounding.
+/// Deviations of one picture that differ by less agree within the paper's rounding.
 constexpr double kAgreement_percent = 1.0;
 
 std::string decimal(double number, int decimals) {
@@ -39,7 +39,7 @@ std::string picture_number(std::size_t index) {
   return fmt::format("paper {}", index + 1);
 }
 
-Section beside_paper(const PaperMeasures& measures, const std::string& source) {
+Section agreement_section(const PaperMeasures& measures, const std::string& source) {
   Table table{.id = "paper-claims",
               .caption = "What the paper states, and what was found here",
               .columns = {{"in the paper", Align::left},
@@ -52,23 +52,23 @@ Section beside_paper(const PaperMeasures& measures, const std::string& source) {
   table.notes = {
       {"A verdict counts pictures, or cells of Table 1 (one statistic of one picture in "
        "one direction)."}};
-  return {
-      "agreement",
-      "What agrees and what does not",
-      {Cited{fmt::format(
-           "The paper is \"Haptic Texture Rendering of 2D Image Based on Adaptive Fractional "
-           "Differential Method\". Its measurements are repeated here on {}, with the method "
-           "as docs/method.md defines it.",
-           source)},
-       Cited{"The paper does not name the images that it took from the Brodatz database, so its "
-             "numbers cannot be compared cell by cell. What can be compared is the direction "
-             "of each change, and ranges. Its text states no numbers for Figs. 1, 3 and 7, and "
-             "Figs. 2 and 5 are a diagram and a photograph. In what follows, \"Fig. 1\" and "
-             "\"Table 1\" are the paper's."},
-       std::move(table)}};
+  return {"agreement",
+          "What agrees and what does not",
+          {CitedText{fmt::format(
+               "The paper is \"Haptic Texture Rendering of 2D Image Based on Adaptive Fractional "
+               "Differential Method\". Its measurements are repeated here on {}, with the method "
+               "as docs/method.md defines it.",
+               source)},
+           CitedText{
+               "The paper does not name the images that it took from the Brodatz database, so its "
+               "numbers cannot be compared cell by cell. What can be compared is the direction "
+               "of each change, and ranges. Its text states no numbers for Figs. 1, 3 and 7, and "
+               "Figs. 2 and 5 are a diagram and a photograph. In what follows, \"Fig. 1\" and "
+               "\"Table 1\" are the paper's."},
+           std::move(table)}};
 }
 
-Section figure_1(const PaperMeasures& measures, const PaperPictures& pictures) {
+Section figure_1_section(const PaperMeasures& measures, const PaperPictures& pictures) {
   Table table{.id = "paper-strength",
               .caption =
                   "Strength of textures (rms of T, grey levels), and the share of their "
@@ -93,24 +93,25 @@ Section figure_1(const PaperMeasures& measures, const PaperPictures& pictures) {
   table.notes = {
       {"Fine share: the power of the texture's sub-bands LH, HL and HH over that of all "
        "four, of one level of the transform of the paper's Eq. 1."}};
-  return {
-      "figure-1",
-      "Figure 1 and Table 2: textures",
-      {Cited{"The paper shows five pictures and their textures of three fixed orders and of the "
-             "adaptive method, and judges them by eye. The table has numbers for two of its "
-             "observations."},
-       pictures.orders, std::move(table)}};
+  return {"figure-1",
+          "Figure 1 and Table 2: textures",
+          {CitedText{
+               "The paper shows five pictures and their textures of three fixed orders and of the "
+               "adaptive method, and judges them by eye. The table has numbers for two of its "
+               "observations."},
+           pictures.orders, std::move(table)}};
 }
 
-const engine::OrderFigures& at_order(const engine::Evaluation& evaluation, double order) {
+const engine::OrderEvaluation& evaluation_nearest(const engine::Evaluation& evaluation,
+                                                  double order) {
   return *std::min_element(evaluation.orders.begin(), evaluation.orders.end(),
                            [&](const auto& a, const auto& b) {
                              return std::abs(a.order - order) < std::abs(b.order - order);
                            });
 }
 
-Section figure_3(const PaperMeasures& measures, const Picture& sweep) {
-  constexpr std::array<double, 4> kShown = {0.3, 0.5, 0.7, 0.95};
+Section figure_3_section(const PaperMeasures& measures, const Picture& sweep) {
+  constexpr std::array<double, 4> kShownOrders = {0.3, 0.5, 0.7, 0.95};
   Table table{.id = "paper-sweep",
               .caption = "MS-SSIM of the textures of fixed orders with the adaptive texture",
               .columns = {{"picture", Align::left},
@@ -118,32 +119,31 @@ Section figure_3(const PaperMeasures& measures, const Picture& sweep) {
                           {"most alike: order"},
                           {"its entropy"},
                           {"its MS-SSIM"}}};
-  for (const double order : kShown) table.columns.push_back({fmt::format("at {:g}", order)});
-  double least = 1.0;
+  for (const double order : kShownOrders) table.columns.push_back({fmt::format("at {:g}", order)});
+  double min_ms_ssim = 1.0;
   for (const MeasuredPicture& one : measures.pictures) {
-    const engine::OrderFigures& closest = engine::closest_order(one.evaluation);
-    least = std::min(least, closest.ms_ssim);
+    const engine::OrderEvaluation& closest = engine::closest_order(one.evaluation);
+    min_ms_ssim = std::min(min_ms_ssim, closest.ms_ssim);
     std::vector<Cell> row = {one.name, decimal(one.evaluation.adaptive.entropy, 3),
                              decimal(closest.order, 2), decimal(closest.entropy, 3),
                              decimal(closest.ms_ssim, 4)};
-    for (const double order : kShown) {
-      row.emplace_back(decimal(at_order(one.evaluation, order).ms_ssim, 4));
+    for (const double order : kShownOrders) {
+      row.emplace_back(decimal(evaluation_nearest(one.evaluation, order).ms_ssim, 4));
     }
     table.rows.push_back(std::move(row));
   }
-  table.notes = {
-      {fmt::format("For every picture, one fixed order reaches an MS-SSIM of at least {:.4f} with "
-                   "the adaptive texture. MS-SSIM here is likeness to the adaptive texture; it "
-                   "does not say which texture is better.",
-                   least)}};
-  return {
-      "figure-3",
-      "Figures 2 and 3: entropy and MS-SSIM over the order",
-      {Cited{"Fig. 2 is the procedure of MS-SSIM, which docs/method.md defines. The paper's Eq. "
-             "6 prints twice the covariance in the structure term; with it, equal pictures "
-             "would have terms above 1. Here the covariance is single, and equal pictures have "
-             "exactly 1."},
-       sweep, std::move(table)}};
+  table.notes = {{fmt::format(
+      "For every picture, one fixed order reaches an MS-SSIM of at least {:.4f} with "
+      "the adaptive texture. MS-SSIM measures similarity to the adaptive texture, not quality.",
+      min_ms_ssim)}};
+  return {"figure-3",
+          "Figures 2 and 3: entropy and MS-SSIM over the order",
+          {CitedText{
+               "Fig. 2 is the procedure of MS-SSIM, which docs/method.md defines. The paper's Eq. "
+               "6 prints twice the covariance in the structure term; with it, equal pictures "
+               "would have terms above 1. Here the covariance is single, and equal pictures have "
+               "exactly 1."},
+           sweep, std::move(table)}};
 }
 
 void add_published_rows(Table& table, std::size_t index) {
@@ -184,7 +184,7 @@ Table empty_cells_table(std::string id, std::string caption) {
   return table;
 }
 
-Table cells_of_paper() {
+Table published_cells_table() {
   Table table = empty_cells_table("paper-table-1", "The paper's Table 1 as it is printed");
   for (std::size_t i = 0; i < kPublishedTable.size(); ++i) add_published_rows(table, i);
   const Proportion roots = published_roots();
@@ -195,7 +195,7 @@ Table cells_of_paper() {
   return table;
 }
 
-Table cells_of_ours(const PaperMeasures& measures) {
+Table measured_cells_table(const PaperMeasures& measures) {
   Table table = empty_cells_table("paper-table-1-here", "The same statistics of our pictures");
   for (const MeasuredPicture& one : measures.pictures) add_measured_rows(table, one);
   return table;
@@ -214,15 +214,15 @@ Table changes_table(const PaperMeasures& measures) {
                   {"falls, here"},
                   {"cells, here"}}};
   for (const PaperStatistic& statistic : kPaperStatistics) {
-    const CellChanges theirs = published_changes(statistic);
-    const CellChanges ours = measured_changes(measures, statistic);
-    const auto counted_or_none = [&](int count) {
-      return Cell(theirs.of == 0 ? "-" : std::to_string(count));
+    const CellChanges published = published_changes(statistic);
+    const CellChanges measured = measured_changes(measures, statistic);
+    const auto count_or_dash = [&](int count) {
+      return Cell(published.total == 0 ? "-" : std::to_string(count));
     };
-    table.rows.push_back({std::string(statistic.name), counted_or_none(theirs.rising),
-                          counted_or_none(theirs.falling), counted_or_none(theirs.of),
-                          std::to_string(ours.rising), std::to_string(ours.falling),
-                          std::to_string(ours.of)});
+    table.rows.push_back({std::string(statistic.name), count_or_dash(published.rising),
+                          count_or_dash(published.falling), count_or_dash(published.total),
+                          std::to_string(measured.rising), std::to_string(measured.falling),
+                          std::to_string(measured.total)});
   }
   return table;
 }
@@ -280,7 +280,7 @@ std::string range_in_reading(const PaperMeasures& measures, std::size_t reading,
 }
 
 Table readings_table(const PaperMeasures& measures) {
-  const double least = published_least_correlation();
+  const double min_correlation = published_least_correlation();
   Table table{
       .id = "paper-readings",
       .caption = "The paper's Table 1 under other readings of what the paper leaves open",
@@ -288,7 +288,7 @@ Table readings_table(const PaperMeasures& measures) {
                   {"contrast, after / before"},
                   {"correlation after"},
                   {"as the text says"},
-                  {fmt::format("and correlation {:.2f} or more", least)},
+                  {fmt::format("and correlation {:.2f} or more", min_correlation)},
                   {fmt::format("like the paper's picture {}", kPublishedContradiction + 1)}}};
   for (std::size_t i = 0; i < kTableReadings.size(); ++i) {
     table.rows.push_back(
@@ -298,7 +298,7 @@ Table readings_table(const PaperMeasures& measures) {
                           [](const TableSummary& one) { return one.agrees_with_text; }),
          count_in_reading(measures, i,
                           [&](const TableSummary& one) {
-                            return one.agrees_with_text && one.correlation_after >= least;
+                            return one.agrees_with_text && one.correlation_after >= min_correlation;
                           }),
          count_in_reading(measures, i, is_like_contradiction)});
   }
@@ -315,17 +315,18 @@ template <typename Condition>
 std::string readings_with(const PaperMeasures& measures, const Condition& condition) {
   std::string words;
   for (std::size_t i = 0; i < kTableReadings.size(); ++i) {
-    const bool any = std::any_of(
+    const bool is_met = std::any_of(
         measures.pictures.begin(), measures.pictures.end(), [&](const MeasuredPicture& one) {
           return condition(summary_of(one.evaluation.original.glcm, one.readings[i]));
         });
-    if (any) words += fmt::format("{}\"{}\"", words.empty() ? "" : ", ", kTableReadings[i].words);
+    if (is_met)
+      words += fmt::format("{}\"{}\"", words.empty() ? "" : ", ", kTableReadings[i].words);
   }
   return words.empty() ? "none" : words;
 }
 
 std::string contradiction_words(const PaperMeasures& measures) {
-  const TableSummary third = summary_of(kPublishedTable[kPublishedContradiction]);
+  const TableSummary contradiction = summary_of(kPublishedTable[kPublishedContradiction]);
   double low = std::numeric_limits<double>::infinity();
   double high = 0.0;
   for (std::size_t i = 0; i < kPublishedTable.size(); ++i) {
@@ -345,18 +346,19 @@ std::string contradiction_words(const PaperMeasures& measures) {
       "times as large with the mask as defined, and {} times with the mask divided by its sum. "
       "Readings under which one of our pictures has a growing contrast, no rising ASM and a "
       "correlation as high as the paper's: {}.",
-      kPublishedContradiction + 1, third.contrast_ratio,
-      100.0 * third.deviation_after / third.deviation_before, 100.0 * low, 100.0 * high,
-      third.disagreement_percent,
-      third.disagreement_percent < kAgreement_percent ? "no single cell can be a misprint"
-                                                      : "some of these cells may be misprints",
+      kPublishedContradiction + 1, contradiction.contrast_ratio,
+      100.0 * contradiction.deviation_after / contradiction.deviation_before, 100.0 * low,
+      100.0 * high, contradiction.disagreement_percent,
+      contradiction.disagreement_percent < kAgreement_percent
+          ? "no single cell can be a misprint"
+          : "some of these cells may be misprints",
       range_in_reading(measures, kReadingAsDefined, &TableSummary::contrast_ratio, 2),
       range_in_reading(measures, kReadingBySum, &TableSummary::contrast_ratio, 2),
       readings_with(measures, is_like_contradiction));
 }
 
 std::string correlation_words(const PaperMeasures& measures) {
-  const double least = published_least_correlation();
+  const double min_correlation = published_least_correlation();
   return fmt::format(
       "Every texture in the paper has a mean correlation over the directions of {:.2f} or more. "
       "The texture T is a difference of a pixel and its surroundings within two pixels, which "
@@ -364,27 +366,28 @@ std::string correlation_words(const PaperMeasures& measures) {
       "smooth. Readings under which one of our pictures reaches that level while ASM, contrast and "
       "correlation change as the text says: {}. The paper gives neither the size of its mask nor "
       "its normalisation, so which one it used cannot be decided.",
-      least, readings_with(measures, [&](const TableSummary& one) {
-        return one.agrees_with_text && one.correlation_after >= least;
+      min_correlation, readings_with(measures, [&](const TableSummary& one) {
+        return one.agrees_with_text && one.correlation_after >= min_correlation;
       }));
 }
 
-Section table_1(const PaperMeasures& measures) {
+Section table_1_section(const PaperMeasures& measures) {
   return {"table-1",
           "Table 1: co-occurrence statistics",
-          {changes_table(measures), summary_table(measures), Cited{contradiction_words(measures)},
-           Cited{correlation_words(measures)}, readings_table(measures), cells_of_paper(),
-           cells_of_ours(measures)}};
+          {changes_table(measures), summary_table(measures),
+           CitedText{contradiction_words(measures)}, CitedText{correlation_words(measures)},
+           readings_table(measures), published_cells_table(), measured_cells_table(measures)}};
 }
 
-Section figure_4(const PaperPictures& pictures) {
-  return {"figure-4",
-          "Figures 4 and 5: forces and apparatus",
-          {Cited{"Fig. 4 shows the forces on the texture of the picture \"Lena\" at order 0.55. "
-                 "That picture is not shipped with this program, so the first picture stands here "
-                 "instead, and as the figure has no scale, no number of it can be compared."},
-           pictures.forces,
-           Cited{"Fig. 5 is a photograph of a Phantom Omni beside a computer. Touchtrial has a "
+Section figure_4_section(const PaperPictures& pictures) {
+  return {
+      "figure-4",
+      "Figures 4 and 5: forces and apparatus",
+      {CitedText{"Fig. 4 shows the forces on the texture of the picture \"Lena\" at order 0.55. "
+                 "That picture is not shipped with this program, so the first picture is used "
+                 "here. The figure has no scale, so its numbers cannot be compared."},
+       pictures.forces,
+       CitedText{"Fig. 5 is a photograph of a Phantom Omni beside a computer. Touchtrial has a "
                  "driver for that device, which has not been verified on hardware "
                  "(docs/devices)."}}};
 }
@@ -405,7 +408,7 @@ void add_interval_row(Table& table, std::string name, double share, int trials_o
         percent_range(assumed_interval(share, spread, {kPublishedPeople, trials_of_person})));
   }
   row.emplace_back(percent_range(
-      assumed_interval(share, widest_spread(share), {kPublishedPeople, trials_of_person})));
+      assumed_interval(share, largest_spread(share), {kPublishedPeople, trials_of_person})));
   table.rows.push_back(std::move(row));
 }
 
@@ -439,34 +442,35 @@ Table accuracy_table() {
   return table;
 }
 
-double least_lower_end() {
-  double least = 1.0;
+double lowest_interval_end() {
+  double lowest_end = 1.0;
   for (const int percent : kPublishedPercents) {
     const double share = percent / 100.0;
-    least = std::min(least, assumed_interval(share, widest_spread(share),
-                                             {kPublishedPeople, kPublishedTrialsOfClass})
-                                .low);
+    lowest_end = std::min(lowest_end, assumed_interval(share, largest_spread(share),
+                                                       {kPublishedPeople, kPublishedTrialsOfClass})
+                                          .low);
   }
-  return least;
+  return lowest_end;
 }
 
-Section figure_6() {
+Section figure_6_section() {
   const double chance = 1.0 / kPublishedClasses;
-  const double least = least_lower_end();
+  const double lowest_end = lowest_interval_end();
   return {
       "figure-6",
       "Figure 6: accuracies of the first experiment",
-      {Cited{"The paper reports one percentage per picture, without a spread between people, an "
-             "interval or a test. How certain they are therefore depends on how much people "
-             "differed."},
+      {CitedText{
+           "The paper reports one percentage per picture, without a spread between people, an "
+           "interval or a test. Their precision therefore depends on how much people differed."},
        accuracy_table(),
-       Cited{fmt::format("Even with the largest spread that is possible, the lowest interval "
-                         "ends at {}, which is {} chance ({}).",
-                         share_figure(least), least > chance ? "above" : "not above",
-                         share_figure(chance))},
-       Cited{"We have no numbers to set beside these: no person has been tested with this program. "
-             "Simulated participants can run the same study (docs/stimuli.md), but they "
-             "describe a model of a hand and of a sense, not people."}}};
+       CitedText{fmt::format("Even with the largest possible spread, the lowest interval "
+                             "ends at {}, which is {} chance ({}).",
+                             share_figure(lowest_end), lowest_end > chance ? "above" : "not above",
+                             share_figure(chance))},
+       CitedText{
+           "We have no numbers to compare with these: no person has been tested with this program. "
+           "Simulated participants can run the same study (docs/stimuli.md), but they model a hand "
+           "and a sense of touch, not people."}}};
 }
 
 Table methods_table(const PaperMeasures& measures) {
@@ -497,7 +501,7 @@ Table decibel_table(double adaptive, double tv_gabor) {
                           {"excludes no difference", Align::left}}};
   for (const double spread : kSpreads) {
     const AssumedDifference one =
-        assumed_difference(adaptive, tv_gabor, spread, {kPublishedPeople, kTrialsOfMethod});
+        assumed_difference(adaptive, tv_gabor, spread, {kPublishedPeople, kTrialsPerMethod});
     table.rows.push_back({fmt::format("{:.0f} points", 100.0 * spread),
                           percent_range(one.difference),
                           fmt::format("{:.2f} to {:.2f}", one.decibel.low, one.decibel.high),
@@ -507,12 +511,12 @@ Table decibel_table(double adaptive, double tv_gabor) {
       {fmt::format("Assumes that each of {} people felt {} presentations with either method, and "
                    "that the adaptive method's accuracy is the mean of Fig. 6; the paper says "
                    "neither. t intervals over people; the one in dB to first order.",
-                   kPublishedPeople, kTrialsOfMethod),
+                   kPublishedPeople, kTrialsPerMethod),
        {Source::student}}};
   return table;
 }
 
-Section table_3(const PaperMeasures& measures, const PaperPictures& pictures) {
+Section table_3_section(const PaperMeasures& measures, const PaperPictures& pictures) {
   const double adaptive = published_mean();
   const double ratio = std::pow(10.0, kPublishedDecibel / 10.0);
   const double tv_gabor = adaptive / ratio;
@@ -520,7 +524,7 @@ Section table_3(const PaperMeasures& measures, const PaperPictures& pictures) {
       "table-3",
       "Table 3 and Figure 7: comparison with TV-Gabor",
       {pictures.methods, methods_table(measures),
-       Cited{fmt::format(
+       CitedText{fmt::format(
            "The paper's text gives no accuracy of Fig. 7, and summarises it as {} dB more. Read "
            "as 10 log10 of a ratio of accuracies, that is a factor of {:.3f}: {} instead of {}, "
            "if the adaptive method reaches the mean of Fig. 6. A decibel compares powers, "
@@ -539,13 +543,10 @@ Document paper_document(const PaperMeasures& measures, const PaperPictures& pict
   document.title = "The source paper, figure by figure";
   document.about = "This page";
   document.numbered = false;  // "Table 1" is the paper's
-  document.sections = {beside_paper(measures, source),
-                       figure_1(measures, pictures),
-                       figure_3(measures, sweep),
-                       table_1(measures),
-                       figure_4(pictures),
-                       figure_6(),
-                       table_3(measures, pictures)};
+  document.sections = {agreement_section(measures, source), figure_1_section(measures, pictures),
+                       figure_3_section(measures, sweep),   table_1_section(measures),
+                       figure_4_section(pictures),          figure_6_section(),
+                       table_3_section(measures, pictures)};
   document.colophon = "Made by the command touchtrial paper.";
   return document;
 }

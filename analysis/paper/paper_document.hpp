@@ -1,6 +1,6 @@
-/// \file The source paper's figures and tables beside the measured ones, as a document and as JSON.
-/// Every statement about agreement is computed from the measures. docs/paper.md is this document
-/// for the program's own pictures.
+/// \file Compares the source paper's figures and tables with measured values, as a document and as
+/// JSON. Every statement about agreement is computed from the measures. docs/paper.md is this
+/// document for the built-in pictures.
 #pragma once
 
 #include "analysis/paper/paper_measures.hpp"
@@ -12,8 +12,8 @@
 namespace touchtrial::analysis {
 
 /// \param measures  of at least one picture
-/// \param sweep  Fig. 3, drawn or without an SVG
-/// \param source  the origin of the pictures, in words
+/// \param sweep  Fig. 3; its SVG may be empty
+/// \param source  describes the origin of the pictures
 [[nodiscard]] Document paper_document(const PaperMeasures& measures, const PaperPictures& pictures,
                                       const Picture& sweep, const std::string& source);
 

@@ -11,7 +11,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// Rounding tolerance for a spread equal to widest_spread.
+/// Rounding tolerance for a spread equal to largest_spread.
 constexpr double kSpreadRounding = 1e-12;
 
 void require_assumptions(bool in_range) {
@@ -37,31 +37,31 @@ bool is_possible(AssumedStudy study) {
 
 }  // namespace
 
-double widest_spread(double mean) {
+double largest_spread(double mean) {
   return std::sqrt(mean * (1.0 - mean));
 }
 
 Interval assumed_interval(double mean, double spread, AssumedStudy study) {
   require_assumptions(is_possible(study) && mean >= 0.0 && mean <= 1.0 && spread >= 0.0 &&
-                      spread <= widest_spread(mean) + kSpreadRounding);
-  const double half =
+                      spread <= largest_spread(mean) + kSpreadRounding);
+  const double margin =
       half_width(variance_of_share(mean, spread * spread, study.trials), study.people);
-  return {std::max(0.0, mean - half), std::min(1.0, mean + half)};
+  return {std::max(0.0, mean - margin), std::min(1.0, mean + margin)};
 }
 
 AssumedDifference assumed_difference(double first, double second, double spread,
                                      AssumedStudy study) {
   require_assumptions(is_possible(study) && first > 0.0 && first < 1.0 && second > 0.0 &&
                       second < 1.0 && spread >= 0.0);
-  const double of_each = 0.5 * spread * spread;
-  const double v1 = variance_of_share(first, of_each, study.trials);
-  const double v2 = variance_of_share(second, of_each, study.trials);
-  const double half = half_width(v1 + v2, study.people);
-  const double half_db = 10.0 / std::log(10.0) *
-                         half_width(v1 / (first * first) + v2 / (second * second), study.people);
+  const double method_variance = 0.5 * spread * spread;
+  const double v1 = variance_of_share(first, method_variance, study.trials);
+  const double v2 = variance_of_share(second, method_variance, study.trials);
+  const double margin = half_width(v1 + v2, study.people);
+  const double margin_db = 10.0 / std::log(10.0) *
+                           half_width(v1 / (first * first) + v2 / (second * second), study.people);
   const double difference = first - second;
   const double decibel = decibels(first, second).value();
-  return {{difference - half, difference + half}, {decibel - half_db, decibel + half_db}};
+  return {{difference - margin, difference + margin}, {decibel - margin_db, decibel + margin_db}};
 }
 
 }  // namespace touchtrial::analysis

@@ -19,7 +19,7 @@ PaperJson strength_json(const TextureStrength& strength) {
 
 PaperJson swept_json(const engine::Evaluation& evaluation) {
   PaperJson orders = PaperJson::array();
-  for (const engine::OrderFigures& one : evaluation.orders) {
+  for (const engine::OrderEvaluation& one : evaluation.orders) {
     orders.push_back({{"order", one.order}, {"entropy", one.entropy}, {"ms_ssim", one.ms_ssim}});
   }
   return orders;
@@ -61,7 +61,7 @@ std::string paper_json(const PaperMeasures& measures) {
                                 {"says", claim.statement},
                                 {"found", claim.measured},
                                 {"agreeing", claim.agreeing},
-                                {"of", claim.of},
+                                {"of", claim.total},
                                 {"verdict", verdict_of(claim)}});
   }
   for (const MeasuredPicture& one : measures.pictures) {

@@ -24,7 +24,7 @@ TextureStrength strength_of(const Plane<double>& texture) {
           fine / (fine + power_of(bands.ll))};
 }
 
-Plane<double> texture_by(const GreyImage& image, const engine::ExtractionOptions& options) {
+Plane<double> extracted_texture(const GreyImage& image, const engine::ExtractionOptions& options) {
   return engine::extract_texture<double>(image, options).texture;
 }
 
@@ -33,7 +33,7 @@ engine::GlcmTable table_of_reading(const GreyImage& image, const TableReading& r
   options.norm = reading.norm;
   options.radius = reading.radius;
   return engine::glcm_statistics(
-      engine::texture_picture(texture_by(image, options), reading.mapping));
+      engine::texture_picture(extracted_texture(image, options), reading.mapping));
 }
 
 MeasuredPicture measures_of_picture(const PaperPicture& picture,
@@ -44,9 +44,9 @@ MeasuredPicture measures_of_picture(const PaperPicture& picture,
     engine::ExtractionOptions options;
     options.method = engine::Method::fixed;
     options.order = kPaperOrders[i];
-    measures.fixed[i] = strength_of(texture_by(picture.image, options));
+    measures.fixed[i] = strength_of(extracted_texture(picture.image, options));
   }
-  measures.adaptive = strength_of(texture_by(picture.image, {}));
+  measures.adaptive = strength_of(extracted_texture(picture.image, {}));
   for (std::size_t i = 0; i < kTableReadings.size(); ++i) {
     measures.readings[i] = table_of_reading(picture.image, kTableReadings[i]);
   }
@@ -56,8 +56,8 @@ MeasuredPicture measures_of_picture(const PaperPicture& picture,
 MethodMeasures measures_of_methods(const PaperPicture& picture) {
   engine::ExtractionOptions options;
   options.method = engine::Method::tv_gabor;
-  const Plane<double> adaptive = texture_by(picture.image, {});
-  const Plane<double> tv_gabor = texture_by(picture.image, options);
+  const Plane<double> adaptive = extracted_texture(picture.image, {});
+  const Plane<double> tv_gabor = extracted_texture(picture.image, options);
   return {
       picture.name, strength_of(adaptive), strength_of(tv_gabor),
       engine::ms_ssim<double>(engine::texture_picture(adaptive), engine::texture_picture(tv_gabor))
@@ -71,10 +71,10 @@ PaperMeasures measure_for_paper(std::span<const PaperPicture> pictures,
                                 const PaperProgress& progress) {
   const int steps = static_cast<int>(pictures.size()) * (engine::kSweptOrders + 1) +
                     static_cast<int>(compared.size());
-  int done = 0;
+  int finished = 0;
   const auto step = [&] {
-    ++done;
-    if (progress) progress(done, steps);
+    ++finished;
+    if (progress) progress(finished, steps);
   };
   PaperMeasures measures;
   for (const PaperPicture& one : pictures) {

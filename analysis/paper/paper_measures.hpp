@@ -1,4 +1,4 @@
-/// \file The source paper's measures of pictures and their textures, for any pictures. Source:
+/// \file The measures of the source paper, for any pictures and their textures. Source:
 /// docs/method.md; paper Figs. 1 and 3, Tables 1 and 3.
 #pragma once
 
@@ -28,15 +28,15 @@ struct TextureStrength {
   double fine_share = 0.0;  ///< share of its power in the finest sub-bands lh, hl and hh; 0 if flat
 };
 
-/// One interpretation of the details that the paper leaves open.
+/// One reading of the details that the paper does not specify.
 struct TableReading {
-  const char* words;
+  const char* words;  ///< description in reports
   engine::Norm norm = engine::Norm::additive;
   int radius = 2;
   engine::Mapping mapping = engine::Mapping::offset;
 };
 
-/// The method as docs/method.md defines it, then other readings.
+/// First the method as docs/method.md defines it, then other readings.
 inline constexpr std::array<TableReading, 6> kTableReadings = {
     {{"as defined"},
      {"mask of radius 8", engine::Norm::additive, 8},
@@ -62,7 +62,7 @@ struct MethodMeasures {
   std::string name;
   TextureStrength adaptive{};
   TextureStrength tv_gabor{};
-  double ms_ssim = 0.0;  ///< of the two textures' pictures, exponents 1
+  double ms_ssim = 0.0;  ///< between the two texture pictures, exponents 1
 };
 
 struct PaperMeasures {
@@ -70,19 +70,20 @@ struct PaperMeasures {
   std::vector<MethodMeasures> compared;
 };
 
-/// Called after each step, with the number done and their total.
-using PaperProgress = std::function<void(int done, int of)>;
+/// Called after each step with the number of finished steps and their total.
+using PaperProgress = std::function<void(int finished, int total)>;
 
-/// Measures pictures for Figs. 1 and 3 and Table 1, and others for Table 3, in double.
+/// Measures pictures in double precision.
+/// \param pictures  for Figs. 1 and 3 and Table 1
 /// \param compared  for Table 3; may be the same pictures
 /// \throws std::invalid_argument if a side of a picture is below engine::kMsSsimSmallestSide
 [[nodiscard]] PaperMeasures measure_for_paper(std::span<const PaperPicture> pictures,
                                               std::span<const PaperPicture> compared,
                                               const PaperProgress& progress = {});
 
-/// The standard deviation of the grey levels that contrast and correlation of one direction imply:
+/// The standard deviation of the grey levels, implied by contrast and correlation of one direction:
 /// contrast = 2 sd^2 (1 - correlation).
-/// \return grey levels; 0 if the correlation is 1
+/// \return in grey levels; 0 if the correlation is 1
 [[nodiscard]] double implied_deviation(double contrast, double correlation);
 
 }  // namespace touchtrial::analysis

@@ -18,9 +18,8 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// Side of the pictures of Fig. 4, pixels, and of the patch of the texture that they show.
-constexpr int kForcesSide_px = 288;
-constexpr int kForcesPatch_px = 12;
+constexpr int kForcesSide_px = 288;  ///< side of the pictures of Fig. 4
+constexpr int kForcesPatch_px = 12;  ///< side of the part of the texture that they show
 constexpr double kOrderOfFigure4 = 0.55;
 
 GreyImage middle_of(const GreyImage& picture) {
@@ -37,21 +36,21 @@ GreyImage middle_of(const GreyImage& picture) {
   return middle;
 }
 
-GreyImage shrunk(const GreyImage& picture) {
-  const int longer = std::max(picture.height(), picture.width());
-  if (longer <= kShownSide_px) return picture;
-  const auto side = [&](int length) { return std::max(1, length * kShownSide_px / longer); };
+GreyImage shrink_to_shown_side(const GreyImage& picture) {
+  const int longer_side = std::max(picture.height(), picture.width());
+  if (longer_side <= kShownSide_px) return picture;
+  const auto side = [&](int length) { return std::max(1, length * kShownSide_px / longer_side); };
   return engine::resized(picture, side(picture.height()), side(picture.width()));
 }
 
-GreyImage drawn_texture(const GreyImage& image, engine::Method method, double order = 0.0) {
+GreyImage texture_image(const GreyImage& image, engine::Method method, double order = 0.0) {
   engine::ExtractionOptions options;
   options.method = method;
   if (method == engine::Method::fixed) options.order = order;
   return engine::texture_picture(engine::extract_texture<double>(image, options).texture);
 }
 
-std::string alt_of(const Tiles& tiles) {
+std::string tiles_alt(const Tiles& tiles) {
   return "Rows: " + listed(tiles.labels) + ". Columns: " + listed(tiles.titles) + ".";
 }
 
@@ -65,26 +64,26 @@ Picture orders_picture(std::span<const PaperPicture> pictures) {
     row.push_back(engine::png_bytes(middle_of(one.image)));
     for (const double order : kPaperOrders) {
       row.push_back(
-          engine::png_bytes(middle_of(drawn_texture(one.image, engine::Method::fixed, order))));
+          engine::png_bytes(middle_of(texture_image(one.image, engine::Method::fixed, order))));
     }
-    row.push_back(engine::png_bytes(middle_of(drawn_texture(one.image, engine::Method::adaptive))));
+    row.push_back(engine::png_bytes(middle_of(texture_image(one.image, engine::Method::adaptive))));
   }
   return picture_of_tiles(
       "paper-orders",
       fmt::format("The middle of each picture, {0} x {0} pixels, its textures of the fixed orders "
                   "of the paper's Fig. 1, and its adaptive texture, as in the paper's Table 2.",
                   kShownSide_px),
-      alt_of(tiles), tiles);
+      tiles_alt(tiles), tiles);
 }
 
 Picture forces_picture(const PaperPicture& picture) {
   engine::ExtractionOptions options;
   options.method = engine::Method::fixed;
   options.order = kOrderOfFigure4;
-  engine::WantedPlanes wanted;
-  wanted.picture = true;
-  wanted.force = true;
-  const auto extraction = engine::extract_texture<double>(picture.image, options, wanted);
+  engine::RequestedPlanes planes;
+  planes.picture = true;
+  planes.force = true;
+  const auto extraction = engine::extract_texture<double>(picture.image, options, planes);
   const engine::ArrowPatch patch =
       middle_of_patch(engine::strongest_patch(extraction.force), kForcesPatch_px);
   Tiles tiles{{"texture", "forces"}, {}, {}, kForcesSide_px};
@@ -104,21 +103,21 @@ Picture methods_picture(std::span<const PaperPicture> pictures) {
   for (const PaperPicture& one : pictures) {
     tiles.labels.push_back(one.name);
     tiles.cells.push_back(
-        {engine::png_bytes(shrunk(one.image)),
-         engine::png_bytes(middle_of(drawn_texture(one.image, engine::Method::adaptive))),
-         engine::png_bytes(middle_of(drawn_texture(one.image, engine::Method::tv_gabor)))});
+        {engine::png_bytes(shrink_to_shown_side(one.image)),
+         engine::png_bytes(middle_of(texture_image(one.image, engine::Method::adaptive))),
+         engine::png_bytes(middle_of(texture_image(one.image, engine::Method::tv_gabor)))});
   }
   return picture_of_tiles(
       "paper-methods",
       fmt::format("Pictures, made smaller, and the middle of their textures by both methods, "
                   "{0} x {0} pixels, as in the paper's Table 3.",
                   kShownSide_px),
-      alt_of(tiles), tiles);
+      tiles_alt(tiles), tiles);
 }
 
-/// A panel of one number of each picture's textures, as a function of the fixed order.
+/// Plots one number of each picture's textures over the fixed order.
 Panel orders_panel(std::span<const MeasuredPicture> pictures, std::string label,
-                   double engine::OrderFigures::*number) {
+                   double engine::OrderEvaluation::*number) {
   Panel panel;
   panel.x = {.label = "fixed order", .low = 0.0, .high = 1.0, .step = 0.2};
   panel.y = {.label = std::move(label)};
@@ -132,7 +131,7 @@ Panel orders_panel(std::span<const MeasuredPicture> pictures, std::string label,
                .name = fitted(pictures[i].name, kCellWidth),
                .colour = series_colour(i),
                .in_key = true};
-    for (const engine::OrderFigures& one : pictures[i].evaluation.orders) {
+    for (const engine::OrderEvaluation& one : pictures[i].evaluation.orders) {
       line.rows.push_back({.x = one.order, .y = one.*number});
     }
     Layer marks = line;
@@ -153,11 +152,11 @@ PaperPictures paper_pictures(std::span<const PaperPicture> pictures,
 }
 
 Figure order_figure(std::span<const MeasuredPicture> pictures) {
-  Figure figure = figure_named("paper-sweep", "", false, kPage_cm);
-  figure.across = 2;
-  figure.panels = {
-      orders_panel(pictures, "entropy, nats", &engine::OrderFigures::entropy),
-      orders_panel(pictures, "MS-SSIM with the adaptive texture", &engine::OrderFigures::ms_ssim)};
+  Figure figure = empty_figure("paper-sweep", "", false, kPage_cm);
+  figure.panels_per_row = 2;
+  figure.panels = {orders_panel(pictures, "entropy, nats", &engine::OrderEvaluation::entropy),
+                   orders_panel(pictures, "MS-SSIM with the adaptive texture",
+                                &engine::OrderEvaluation::ms_ssim)};
   figure.panels[1].y.high = 1.01;
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     Layer adaptive = dashed_rule(pictures[i].evaluation.adaptive.entropy, "");
@@ -170,7 +169,7 @@ Figure order_figure(std::span<const MeasuredPicture> pictures) {
       "orders that the paper names.";
   figure.alt = "Entropy and MS-SSIM over the fixed order.";
   for (const MeasuredPicture& one : pictures) {
-    const engine::OrderFigures& closest = engine::closest_order(one.evaluation);
+    const engine::OrderEvaluation& closest = engine::closest_order(one.evaluation);
     figure.alt += fmt::format(
         " {}: MS-SSIM is largest at order {:.2f}, {:.4f}; entropy of the "
         "adaptive texture {:.3f} nats.",

@@ -9,10 +9,10 @@
 
 namespace touchtrial::analysis {
 
-/// Side of the part of a picture that is shown, at most; pixels.
+/// Maximum side of the shown part of a picture.
 inline constexpr int kShownSide_px = 100;
 
-/// Figs. 1 and 4 and the two tables of pictures. The SVG files hold PNG pictures and labels.
+/// Figs. 1 and 4 and the two tables of pictures, as SVG with embedded PNG pictures and labels.
 struct PaperPictures {
   Picture orders;   ///< Fig. 1, Table 2: the middle of each picture, and of its textures
   Picture forces;   ///< Fig. 4: the first picture

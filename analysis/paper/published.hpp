@@ -25,7 +25,7 @@ struct PublishedPicture {
   PublishedRow correlation;
 };
 
-/// Half a unit of the last printed digit of the angular second moment and of "Entropy".
+/// Half a unit of the last digit printed for the angular second moment and "Entropy".
 inline constexpr double kPublishedAsmRounding = 0.5e-5;
 inline constexpr double kPublishedEntropyRounding = 0.5e-4;
 
@@ -55,18 +55,18 @@ inline constexpr std::array<PublishedPicture, 5> kPublishedTable = {{
 /// The picture of Table 1 that contradicts the paper's text, counted from 0.
 inline constexpr std::size_t kPublishedContradiction = 2;
 
-/// Fig. 6: right answers per picture, per cent; people, and presentations to each.
+/// Fig. 6: right answers per picture, percent.
 inline constexpr std::array<int, 5> kPublishedPercents = {87, 72, 81, 91, 83};
 inline constexpr int kPublishedPeople = 20;
-inline constexpr int kPublishedTrials = 25;
+inline constexpr int kPublishedTrials = 25;  ///< presentations per person
 inline constexpr int kPublishedClasses = static_cast<int>(kPublishedPercents.size());
-/// Presentations of one picture, if each person feels every picture equally often.
+/// Presentations of one picture per person, if each picture is felt equally often.
 inline constexpr int kPublishedTrialsOfClass = kPublishedTrials / kPublishedClasses;
 
 /// The improvement of the average accuracy over TV-Gabor, 10 log10 of a ratio.
 inline constexpr double kPublishedDecibel = 0.4;
 
-/// The range of fixed orders whose textures are, in the paper, most like the adaptive one.
+/// The fixed orders whose textures are most similar to the adaptive one according to the paper.
 inline constexpr double kPublishedLowestOrder = 0.5;
 inline constexpr double kPublishedHighestOrder = 0.7;
 

@@ -20,14 +20,14 @@ namespace {
 
 constexpr int kAcuityGroups = 8;
 constexpr int kThresholdGroups = 4;
-/// The number of pieces of a stimulus's explorations that threads share. Their sums are added in a
-/// fixed order.
+/// Each stimulus's explorations are split into this many tasks, whose sums are added in a fixed
+/// order.
 constexpr int kPieces = 4;
 
 /// The biases that a layout adds to the supports of the pictures.
 struct LayoutBias {
-  std::vector<double> of_class;  ///< log odds, the same for everybody
-  std::vector<double> nearness;  ///< nearness_of
+  std::vector<double> class_log_odds;  ///< of each class, the same for all people
+  std::vector<double> nearness;        ///< of each class's picture to the first position
 };
 
 std::vector<LayoutBias> biases(const simulation::SubjectModel& subject,
@@ -37,9 +37,9 @@ std::vector<LayoutBias> biases(const simulation::SubjectModel& subject,
   for (const PictureLayout& layout : layouts) {
     LayoutBias bias{std::vector<double>(classes.size()), nearness_of(layout)};
     for (std::size_t c = 0; c < classes.size(); ++c) {
-      bias.of_class[c] = subject.position_bias * bias.nearness[c];
+      bias.class_log_odds[c] = subject.position_bias * bias.nearness[c];
       for (const simulation::ClassBias& preferred : subject.class_bias) {
-        if (preferred.label == classes[c]) bias.of_class[c] += preferred.log_odds;
+        if (preferred.label == classes[c]) bias.class_log_odds[c] += preferred.log_odds;
       }
     }
     all.push_back(std::move(bias));
@@ -47,13 +47,13 @@ std::vector<LayoutBias> biases(const simulation::SubjectModel& subject,
   return all;
 }
 
-/// Biases by layout and prototype: those of the prototype's picture.
-std::vector<std::vector<double>> by_prototype(const std::vector<LayoutBias>& layouts,
-                                              const std::vector<int>& pictures) {
+/// The bias of each prototype's picture, by layout and prototype.
+std::vector<std::vector<double>> prototype_biases(const std::vector<LayoutBias>& layouts,
+                                                  const std::vector<int>& pictures) {
   std::vector<std::vector<double>> biases;
   for (const LayoutBias& layout : layouts) {
-    std::vector<double>& own = biases.emplace_back();
-    for (const int picture : pictures) own.push_back(layout.of_class[picture]);
+    std::vector<double>& row = biases.emplace_back();
+    for (const int picture : pictures) row.push_back(layout.class_log_odds[picture]);
   }
   return biases;
 }
@@ -67,7 +67,7 @@ void set_direction(std::span<const double> normals, std::vector<double>& directi
   }
 }
 
-std::size_t place_in(const std::vector<std::string>& classes, const std::string& label) {
+std::size_t index_of_class(const std::vector<std::string>& classes, const std::string& label) {
   const auto found = std::ranges::find(classes, label);
   if (found == classes.end()) {
     throw std::invalid_argument("AnswerModel: the study has no class of this name: " + label);
@@ -76,20 +76,20 @@ std::size_t place_in(const std::vector<std::string>& classes, const std::string&
 }
 
 /// Converts the pieces' sums to probabilities that include lapses.
-void settle(std::span<const AnswerTable> pieces, int row, double lapse, std::span<double> answers,
-            std::span<double> slopes) {
+void normalise_answers(std::span<const AnswerTable> pieces, int row, double lapse,
+                       std::span<double> answers, std::span<double> slopes) {
   for (const AnswerTable& piece : pieces) {
     for (std::size_t c = 0; c < answers.size(); ++c) answers[c] += piece.answers(row, 0)[c];
     for (std::size_t c = 0; c < slopes.size(); ++c) slopes[c] += piece.slopes(row, 0)[c];
   }
-  double lines = 0.0;
-  for (const double value : answers) lines += value;
+  double total = 0.0;
+  for (const double value : answers) total += value;
   const double chance = 1.0 / static_cast<double>(answers.size());
-  for (double& value : answers) value = lapse * chance + (1.0 - lapse) * value / lines;
-  for (double& value : slopes) value *= (1.0 - lapse) / lines;
+  for (double& value : answers) value = lapse * chance + (1.0 - lapse) * value / total;
+  for (double& value : slopes) value *= (1.0 - lapse) / total;
 }
 
-/// The equally likely groups that a line's person belongs to.
+/// The groups of a noise line's simulated person, each equally likely.
 struct PersonGroup {
   std::uint8_t acuity;
   std::uint8_t threshold;
@@ -114,7 +114,7 @@ class GroupSupports {
     }
   }
 
-  [[nodiscard]] const LinearSupports& of(PersonGroup person) const noexcept {
+  [[nodiscard]] const LinearSupports& supports_of(PersonGroup person) const noexcept {
     const std::size_t acuity = acuities_.size() > 1 ? person.acuity : 0;
     const std::size_t threshold = thresholds_.size() > 1 ? person.threshold : 0;
     return supports_[acuity * thresholds_.size() + threshold];
@@ -130,9 +130,9 @@ class GroupSupports {
 
 std::vector<double> nearness_of(const PictureLayout& layout) {
   std::vector<double> nearness(layout.size(), 0.0);
-  const double last = std::max(1.0, static_cast<double>(layout.size()) - 1.0);
+  const double last_index = std::max(1.0, static_cast<double>(layout.size()) - 1.0);
   for (std::size_t i = 0; i < layout.size(); ++i) {
-    nearness[layout[i]] = 1.0 - static_cast<double>(i) / last;
+    nearness[layout[i]] = 1.0 - static_cast<double>(i) / last_index;
   }
   return nearness;
 }
@@ -149,16 +149,16 @@ double mean_lapse(const simulation::SubjectModel& subject) {
   return sum / kGroups;
 }
 
-AnswerTable::AnswerTable(int layouts, int stimuli, int classes, bool slopes)
+AnswerTable::AnswerTable(int layouts, int stimuli, int classes, bool with_slopes)
     : stimuli_(stimuli), classes_(classes) {
   const auto cells = static_cast<std::size_t>(layouts) * stimuli * classes;
   answers_.assign(cells, 0.0);
-  if (slopes) slopes_.assign(cells * classes, 0.0);
+  if (with_slopes) slopes_.assign(cells * classes, 0.0);
 }
 
 struct AnswerModel::State {
-  State(const simulation::FeltKnowledge& learnt, const simulation::FeltBank& bank,
-        std::vector<std::string> labels, const AnswerModelOptions& chosen);
+  State(const simulation::FeltKnowledge& felt_knowledge, const simulation::FeltBank& bank,
+        std::vector<std::string> labels, const AnswerModelOptions& model_options);
 
   /// Adds all noise lines of one piece of a stimulus's explorations, in every layout.
   void add_piece(int place, int piece, const simulation::SubjectModel& subject,
@@ -166,7 +166,7 @@ struct AnswerModel::State {
                  AnswerTable& sums) const;
   void add_preferences(const simulation::SubjectModel& subject, std::span<const double> numbers,
                        const LayoutBias& layout, const std::vector<int>& pictures,
-                       std::vector<double>& at) const;
+                       std::vector<double>& supports) const;
   [[nodiscard]] std::vector<int> pictures_of(const simulation::SubjectModel& subject) const;
 
   simulation::FeltKnowledge knowledge;
@@ -175,17 +175,18 @@ struct AnswerModel::State {
   std::vector<study::StimulusIndex> stimuli;
   std::vector<std::vector<engine::FeltFeatures>> felt;  ///< by stimulus
   std::vector<NoisePoints> points;                      ///< by stimulus
-  std::vector<std::vector<PersonGroup>> person;         ///< by stimulus, of each line
+  std::vector<std::vector<PersonGroup>> person_groups;  ///< by stimulus and noise line
   int dimensions;                                       ///< of noise
   RadialDistribution radial;
 };
 
-AnswerModel::State::State(const simulation::FeltKnowledge& learnt, const simulation::FeltBank& bank,
-                          std::vector<std::string> labels, const AnswerModelOptions& chosen)
-    : knowledge(learnt),
+AnswerModel::State::State(const simulation::FeltKnowledge& felt_knowledge,
+                          const simulation::FeltBank& bank, std::vector<std::string> labels,
+                          const AnswerModelOptions& model_options)
+    : knowledge(felt_knowledge),
       classes(std::move(labels)),
-      options(chosen),
-      dimensions(noise_dimensions(static_cast<int>(learnt.label_of_prototype.size()))),
+      options(model_options),
+      dimensions(noise_dimensions(static_cast<int>(felt_knowledge.label_of_prototype.size()))),
       radial(dimensions) {
   if (options.directions < 1 || options.jobs < 1) {
     throw std::invalid_argument("AnswerModel: directions and jobs must be at least 1");
@@ -193,15 +194,16 @@ AnswerModel::State::State(const simulation::FeltKnowledge& learnt, const simulat
   // A point holds the noise, then numbers of a person: position bias, class biases, acuity.
   const int numbers = dimensions + 2 + static_cast<int>(classes.size());
   for (int place = 0; place < bank.stimuli(); ++place) {
-    const std::span<const engine::FeltFeatures> own = bank.felt(place);
+    const std::span<const engine::FeltFeatures> explorations = bank.felt(place);
     stimuli.push_back(bank.stimulus(place));
-    felt.emplace_back(own.begin(), own.end());
-    points.emplace_back(numbers, own.size() * static_cast<std::size_t>(options.directions),
+    felt.emplace_back(explorations.begin(), explorations.end());
+    points.emplace_back(numbers, explorations.size() * static_cast<std::size_t>(options.directions),
                         options.seed, static_cast<std::uint64_t>(place));
     RandomStream thresholds(options.seed, "answer model: thresholds",
                             static_cast<std::uint64_t>(place));
-    auto& groups = person.emplace_back();
-    for (std::size_t i = 0; i < own.size() * static_cast<std::size_t>(options.directions); ++i) {
+    auto& groups = person_groups.emplace_back();
+    for (std::size_t i = 0; i < explorations.size() * static_cast<std::size_t>(options.directions);
+         ++i) {
       const double z = points.back().point(i).back();
       const double share = 0.5 * std::erfc(-z / std::numbers::sqrt2);
       const int acuity = std::min(kAcuityGroups - 1, static_cast<int>(share * kAcuityGroups));
@@ -212,28 +214,29 @@ AnswerModel::State::State(const simulation::FeltKnowledge& learnt, const simulat
 }
 
 std::vector<int> AnswerModel::State::pictures_of(const simulation::SubjectModel& subject) const {
-  std::vector<int> matched(classes.size());
-  for (std::size_t c = 0; c < classes.size(); ++c) matched[c] = static_cast<int>(c);
-  for (const auto& [one, other] : subject.label_swap) {
-    std::swap(matched[place_in(classes, one)], matched[place_in(classes, other)]);
+  std::vector<int> picture_of_class(classes.size());
+  for (std::size_t c = 0; c < classes.size(); ++c) picture_of_class[c] = static_cast<int>(c);
+  for (const auto& [first, second] : subject.label_swap) {
+    std::swap(picture_of_class[index_of_class(classes, first)],
+              picture_of_class[index_of_class(classes, second)]);
   }
   std::vector<int> pictures;
   for (const std::string& label : knowledge.label_of_prototype) {
-    pictures.push_back(matched[place_in(classes, label)]);
+    pictures.push_back(picture_of_class[index_of_class(classes, label)]);
   }
   return pictures;
 }
 
-/// Adds the preferences of this line's person to the common ones.
+/// Adds the individual preferences of the simulated person of one noise line.
 void AnswerModel::State::add_preferences(const simulation::SubjectModel& subject,
                                          std::span<const double> numbers, const LayoutBias& layout,
                                          const std::vector<int>& pictures,
-                                         std::vector<double>& at) const {
-  const auto of_person = numbers.subspan(static_cast<std::size_t>(dimensions));
-  for (std::size_t k = 0; k < at.size(); ++k) {
+                                         std::vector<double>& supports) const {
+  const auto person_numbers = numbers.subspan(static_cast<std::size_t>(dimensions));
+  for (std::size_t k = 0; k < supports.size(); ++k) {
     const auto picture = static_cast<std::size_t>(pictures[k]);
-    at[k] += subject.position_bias_spread * of_person[0] * layout.nearness[picture] +
-             subject.class_bias_spread * of_person[1 + picture];
+    supports[k] += subject.position_bias_spread * person_numbers[0] * layout.nearness[picture] +
+                   subject.class_bias_spread * person_numbers[1 + picture];
   }
 }
 
@@ -245,28 +248,29 @@ void AnswerModel::State::add_piece(int place, int piece, const simulation::Subje
   const auto prototypes = pictures.size();
   const auto directions = static_cast<std::size_t>(options.directions);
   const auto noise_numbers = static_cast<std::size_t>(dimensions);
-  std::vector<double> felt_at(prototypes), at(prototypes), slope(prototypes),
+  std::vector<double> felt_supports(prototypes), biased_supports(prototypes), slope(prototypes),
       direction(noise_numbers);
   const bool people_differ =
       subject.position_bias_spread != 0.0 || subject.class_bias_spread != 0.0;
-  const std::vector<std::vector<double>> bias = by_prototype(layouts, pictures);
+  const std::vector<std::vector<double>> bias = prototype_biases(layouts, pictures);
   // Consecutive Sobol points are spread as evenly as the whole sequence.
-  const std::size_t pieces = static_cast<std::size_t>(part.of) * kPieces;
-  const std::size_t own = static_cast<std::size_t>(part.part) * kPieces + piece;
-  const std::size_t last = felt[place].size() * (own + 1) / pieces;
-  for (std::size_t i = felt[place].size() * own / pieces; i < last; ++i) {
+  const std::size_t pieces = static_cast<std::size_t>(part.count) * kPieces;
+  const std::size_t index = static_cast<std::size_t>(part.index) * kPieces + piece;
+  const std::size_t end = felt[place].size() * (index + 1) / pieces;
+  for (std::size_t i = felt[place].size() * index / pieces; i < end; ++i) {
     for (std::size_t j = 0; j < directions; ++j) {
       const std::size_t line = i * directions + j;
       const std::span<const double> numbers = points[place].point(line);
-      const LinearSupports& felt_by = groups.of(person[place][line]);
+      const LinearSupports& supports = groups.supports_of(person_groups[place][line]);
       set_direction(numbers, direction);
-      felt_by.at(felt[place][i], felt_at);
-      felt_by.noise(direction, slope);
+      supports.compute_supports(felt[place][i], felt_supports);
+      supports.compute_noise(direction, slope);
       for (std::size_t l = 0; l < layouts.size(); ++l) {
-        for (std::size_t k = 0; k < prototypes; ++k) at[k] = felt_at[k] + bias[l][k];
-        if (people_differ) add_preferences(subject, numbers, layouts[l], pictures, at);
-        add_winners(at, slope, pictures, radial, 1.0, sums.answers(static_cast<int>(l), 0),
-                    sums.slopes(static_cast<int>(l), 0));
+        for (std::size_t k = 0; k < prototypes; ++k)
+          biased_supports[k] = felt_supports[k] + bias[l][k];
+        if (people_differ) add_preferences(subject, numbers, layouts[l], pictures, biased_supports);
+        add_winners(biased_supports, slope, pictures, radial, 1.0,
+                    sums.answers(static_cast<int>(l), 0), sums.slopes(static_cast<int>(l), 0));
       }
     }
   }
@@ -288,30 +292,31 @@ const std::vector<study::StimulusIndex>& AnswerModel::stimuli() const noexcept {
 }
 
 AnswerTable AnswerModel::answers(const simulation::SubjectModel& subject,
-                                 std::span<const PictureLayout> layouts, bool slopes,
+                                 std::span<const PictureLayout> layouts, bool with_slopes,
                                  BankPart part) const {
   const State& state = *state_;
   const auto classes = static_cast<int>(state.classes.size());
   const auto stimuli = static_cast<int>(state.stimuli.size());
   // Without a preference for positions, all layouts are alike.
-  const bool alike = subject.position_bias == 0.0 && subject.position_bias_spread == 0.0;
+  const bool same_in_all_layouts =
+      subject.position_bias == 0.0 && subject.position_bias_spread == 0.0;
   const std::vector<LayoutBias> bias =
-      biases(subject, state.classes, alike ? layouts.first(1) : layouts);
+      biases(subject, state.classes, same_in_all_layouts ? layouts.first(1) : layouts);
   const auto rows = static_cast<int>(bias.size());
   const GroupSupports groups(subject, state.knowledge);
   const auto tasks = static_cast<std::size_t>(stimuli) * kPieces;
-  std::vector<AnswerTable> sums(tasks, AnswerTable(rows, 1, classes, slopes));
+  std::vector<AnswerTable> sums(tasks, AnswerTable(rows, 1, classes, with_slopes));
   in_parallel(state.options.jobs, tasks, [&](std::size_t task) {
     state.add_piece(static_cast<int>(task / kPieces), static_cast<int>(task % kPieces), subject,
                     groups, bias, part, sums[task]);
   });
-  AnswerTable table(static_cast<int>(layouts.size()), stimuli, classes, slopes);
+  AnswerTable table(static_cast<int>(layouts.size()), stimuli, classes, with_slopes);
   const double lapse = mean_lapse(subject);
   for (int place = 0; place < stimuli; ++place) {
     const std::span pieces(sums.data() + static_cast<std::size_t>(place) * kPieces, kPieces);
     for (int layout = 0; layout < static_cast<int>(layouts.size()); ++layout) {
-      settle(pieces, alike ? 0 : layout, lapse, table.answers(layout, place),
-             table.slopes(layout, place));
+      normalise_answers(pieces, same_in_all_layouts ? 0 : layout, lapse,
+                        table.answers(layout, place), table.slopes(layout, place));
     }
   }
   return table;
@@ -329,7 +334,9 @@ AnswerModel answer_model_of(const study::StudyKey& key, const engine::Pack& pack
       fields, key.study, subject,
       {.explorations = options.explorations, .seed = options.seed, .jobs = options.jobs}, progress);
   std::vector<std::string> classes;
-  for (const study::StudyClass& one : key.study.classes) classes.push_back(one.label);
+  for (const study::StudyClass& study_class : key.study.classes) {
+    classes.push_back(study_class.label);
+  }
   return {knowledge,
           bank,
           std::move(classes),

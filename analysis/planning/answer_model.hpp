@@ -1,5 +1,5 @@
-/// \file Answer probabilities for each stimulus under a subject model, computed from felt
-/// explorations without drawing answers. Source: docs/planning.md, "Probabilities of answers".
+/// \file Answer probabilities for each stimulus under a subject model, integrated over sensory
+/// noise instead of simulating answers. Source: docs/planning.md, "Probabilities of answers".
 #pragma once
 
 #include "engine/pack/pack.hpp"
@@ -27,8 +27,8 @@ using PictureLayout = std::vector<int>;
 /// Probabilities of answers by layout, stimulus (place in the bank) and answered class.
 class AnswerTable {
  public:
-  /// \param slopes  whether the table has derivatives
-  AnswerTable(int layouts, int stimuli, int classes, bool slopes);
+  /// \param with_slopes  whether the table has derivatives
+  AnswerTable(int layouts, int stimuli, int classes, bool with_slopes);
 
   [[nodiscard]] int classes() const noexcept { return classes_; }
   [[nodiscard]] int stimuli() const noexcept { return stimuli_; }
@@ -63,15 +63,15 @@ class AnswerTable {
 };
 
 struct AnswerModelOptions {
-  int directions = 4;      ///< of noise for each exploration, >= 1
+  int directions = 4;      ///< noise directions per exploration, >= 1
   std::uint64_t seed = 1;  ///< shifts the quasi-random points
   int jobs = 1;            ///< threads, >= 1; results do not depend on them
 };
 
 /// One of several equal parts of a bank's explorations. The default is the whole bank.
 struct BankPart {
-  int part = 0;
-  int of = 1;
+  int index = 0;
+  int count = 1;
 };
 
 /// P(answer | stimulus, layout; subject): the probability that FeltDecision gives the answer,
@@ -81,8 +81,8 @@ struct BankPart {
 /// straight lines. Each exploration has a fixed set of noise directions (shifted Sobol points), and
 /// the model integrates over the amount of noise along each direction in closed form. Every call
 /// uses the same points, so the result is a continuous, almost smooth function of the parameters.
-/// The points also represent differences between people, except that noise is divided into eight
-/// and thresholds into four equally likely groups. Immutable, thread-safe; refers to none of its
+/// The same points also represent differences between people, but noise and thresholds are divided
+/// into eight and four equally likely groups. Immutable, thread-safe; keeps no references to its
 /// arguments.
 class AnswerModel {
  public:
@@ -93,14 +93,14 @@ class AnswerModel {
   ~AnswerModel();
   AnswerModel(AnswerModel&&) noexcept;
 
-  /// Cost: explorations x directions x stimuli x layouts x some 0.1 us on one thread; the number of
-  /// layouts matters only if positions are preferred.
-  /// \param subject  feature_noise > 0; its labels are the study's
-  /// \param slopes  whether to compute the derivatives by the pictures' biases, without lapses
-  /// \throws std::invalid_argument if a label is not the study's
+  /// Cost: explorations x directions x stimuli x layouts x about 0.1 us on one thread; the number
+  /// of layouts matters only if positions are preferred.
+  /// \param subject  feature_noise > 0; its labels must occur in the study
+  /// \param with_slopes  whether to compute the derivatives with respect to the pictures' biases
+  /// \throws std::invalid_argument if the study lacks a label
   [[nodiscard]] AnswerTable answers(const simulation::SubjectModel& subject,
-                                    std::span<const PictureLayout> layouts, bool slopes = false,
-                                    BankPart part = {}) const;
+                                    std::span<const PictureLayout> layouts,
+                                    bool with_slopes = false, BankPart part = {}) const;
 
   [[nodiscard]] const std::vector<std::string>& classes() const noexcept;
   [[nodiscard]] const std::vector<study::StimulusIndex>& stimuli() const noexcept;
@@ -114,14 +114,14 @@ class AnswerModel {
 [[nodiscard]] double mean_lapse(const simulation::SubjectModel& subject);
 
 struct FeltStudyOptions {
-  int explorations = 1000;  ///< of each stimulus
-  int directions = 1;       ///< of noise for each exploration
+  int explorations = 1000;  ///< per stimulus
+  int directions = 1;       ///< noise directions per exploration
   /// For the training, with the same effect as the seed of `simulate`, and for the bank's paths.
   std::uint64_t seed = 1;
   int jobs = 1;  ///< threads, >= 1; results do not depend on them
 };
 
-/// Trains the subject, feels a bank of explorations, and makes the model. Cost: as FeltBank.
+/// Trains the subject, simulates a bank of explorations, and builds the model. Cost: see FeltBank.
 /// \throws StudyError if the subject names a class that the study does not have
 /// \throws FileError if the pack lacks a stimulus
 [[nodiscard]] AnswerModel answer_model_of(const study::StudyKey& key, const engine::Pack& pack,
@@ -129,10 +129,10 @@ struct FeltStudyOptions {
                                           const FeltStudyOptions& options,
                                           const study::Progress& progress = {});
 
-/// \return the study's stimuli, in the order of banks
+/// \return the study's stimuli, in the order that FeltBank uses
 [[nodiscard]] std::vector<study::StimulusIndex> stimuli_of(const study::StudyKey& key);
 
-/// \return the different layouts of the first participants
+/// \return the distinct layouts of participants 1 to `participants`
 [[nodiscard]] std::vector<PictureLayout> layouts_of(const study::Study& study, int participants);
 
 }  // namespace touchtrial::planning

@@ -8,7 +8,7 @@
 namespace touchtrial::planning {
 namespace {
 
-int place_of_layout(std::vector<PictureLayout>& layouts, const PictureLayout& layout) {
+int find_or_add_layout(std::vector<PictureLayout>& layouts, const PictureLayout& layout) {
   const auto found = std::ranges::find(layouts, layout);
   const auto place = static_cast<int>(found - layouts.begin());
   if (found == layouts.end()) layouts.push_back(layout);
@@ -50,7 +50,7 @@ FitCounts count_answers(const analysis::Outcomes& outcomes,
     const int session = trial.row.session;
     const auto [entry, is_new] = person_of_session.emplace(session, counts.people.size());
     if (is_new) {
-      const int layout = place_of_layout(counts.layouts, schedules.at(session).layout);
+      const int layout = find_or_add_layout(counts.layouts, schedules.at(session).layout);
       counts.people.push_back({layout, std::vector<double>(cells, 0.0)});
     }
     const std::size_t row = place_of_stimulus(stimuli, trial.stimulus) * counts.classes.size();
@@ -71,7 +71,7 @@ double presentations(const std::vector<double>& cells, std::size_t row, std::siz
   return sum;
 }
 
-Cells by_layout(const FitCounts& counts, std::span<const CountedPerson> people) {
+Cells counts_by_layout(const FitCounts& counts, std::span<const CountedPerson> people) {
   const std::size_t cells = counts.stimuli.size() * counts.classes.size();
   Cells sums(counts.layouts.size(), std::vector<double>(cells, 0.0));
   for (const CountedPerson& person : people) {
@@ -109,13 +109,13 @@ Confusions expected_confusions(const FitCounts& counts, const AnswerTable& table
 }
 
 double g_squared(const Confusions& observed, const Confusions& expected) {
-  constexpr double kLeast = 1e-12;
+  constexpr double kMinExpected = 1e-12;
   double sum = 0.0;
   for (std::size_t m = 0; m < observed.size(); ++m) {
     for (std::size_t c = 0; c < observed[m].size(); ++c) {
       for (std::size_t a = 0; a < observed[m][c].size(); ++a) {
-        const double seen = observed[m][c][a];
-        if (seen > 0.0) sum += seen * std::log(seen / std::max(expected[m][c][a], kLeast));
+        const double count = observed[m][c][a];
+        if (count > 0.0) sum += count * std::log(count / std::max(expected[m][c][a], kMinExpected));
       }
     }
   }
@@ -143,7 +143,7 @@ Cells zeros(std::size_t layouts, const AnswerTable& table) {
 }
 
 CountsEvidence::CountsEvidence(const FitCounts& counts, std::span<const CountedPerson> people)
-    : counts_(counts), sums_(by_layout(counts, people)) {}
+    : counts_(counts), sums_(counts_by_layout(counts, people)) {}
 
 double CountsEvidence::log_likelihood(const AnswerTable& table, Cells* slopes) const {
   const auto classes = static_cast<std::size_t>(table.classes());

@@ -29,8 +29,8 @@ struct FitCounts {
   int no_response = 0;  ///< counted trials without an answer, which are left out
 };
 
-/// Counts the answered trials that enter accuracy, without catch trials. Outcomes already leaves
-/// out erased, excluded, replaced, stopped and other-kind sessions.
+/// Counts the answered trials that enter accuracy, without catch trials. Outcomes already omits
+/// erased, excluded, replaced and stopped sessions, and sessions of another kind.
 /// \param schedules  of the sessions, for their layouts
 /// \param stimuli  of the study, sorted
 /// \throws StudyError if no trial remains
@@ -47,7 +47,8 @@ using Cells = std::vector<std::vector<double>>;
                                    std::size_t classes);
 
 /// \return sums over people
-[[nodiscard]] Cells by_layout(const FitCounts& counts, std::span<const CountedPerson> people);
+[[nodiscard]] Cells counts_by_layout(const FitCounts& counts,
+                                     std::span<const CountedPerson> people);
 
 /// A table by method, presented class and answer, summed over images and layouts.
 using Confusions = std::vector<std::vector<std::vector<double>>>;
@@ -67,8 +68,8 @@ class FitEvidence {
   virtual ~FitEvidence() = default;
 
   [[nodiscard]] virtual std::span<const PictureLayout> layouts() const noexcept = 0;
-  /// \param table  the probabilities for those layouts
-  /// \param slopes  null, or receives the derivatives by the table's probabilities
+  /// \param table  the probabilities for layouts()
+  /// \param slopes  null, or receives the derivatives with respect to the table's probabilities
   [[nodiscard]] virtual double log_likelihood(const AnswerTable& table, Cells* slopes) const = 0;
 };
 
@@ -99,7 +100,7 @@ class CountsEvidence final : public FitEvidence {
 
  private:
   const FitCounts& counts_;
-  Cells sums_;  ///< by_layout
+  Cells sums_;  ///< counts_by_layout
 };
 
 }  // namespace touchtrial::planning

@@ -25,9 +25,9 @@ double bias_of(const simulation::SubjectModel& subject, const std::string& label
 double lapse_slope(simulation::SubjectModel subject) {
   if (subject.lapse_spread == 0.0) return 1.0;
   constexpr double kLapseStep = 1e-5;
-  const double here = mean_lapse(subject);
+  const double base_lapse = mean_lapse(subject);
   subject.lapse += kLapseStep;
-  return (mean_lapse(subject) - here) / kLapseStep;
+  return (mean_lapse(subject) - base_lapse) / kLapseStep;
 }
 
 }  // namespace
@@ -71,17 +71,17 @@ std::vector<double> FitProblem::scales() const {
   return scales;
 }
 
-simulation::SubjectModel FitProblem::subject_at(std::span<const double> at) const {
+simulation::SubjectModel FitProblem::subject_at(std::span<const double> point) const {
   simulation::SubjectModel subject = subject_;
   std::vector<double> biases(model_.classes().size(), 0.0);
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     const Parameter& parameter = parameters_[i];
-    if (parameter.kind == ParameterKind::feature_noise) subject.feature_noise = std::exp(at[i]);
-    if (parameter.kind == ParameterKind::lapse) subject.lapse = at[i];
-    if (parameter.kind == ParameterKind::position) subject.position_bias = at[i];
+    if (parameter.kind == ParameterKind::feature_noise) subject.feature_noise = std::exp(point[i]);
+    if (parameter.kind == ParameterKind::lapse) subject.lapse = point[i];
+    if (parameter.kind == ParameterKind::position) subject.position_bias = point[i];
     if (parameter.kind == ParameterKind::class_bias) {
-      biases[parameter.class_index] = at[i];
-      biases[eliminated_] -= at[i];
+      biases[parameter.class_index] = point[i];
+      biases[eliminated_] -= point[i];
     }
   }
   if (!classes_free_) return subject;
@@ -121,43 +121,45 @@ std::vector<double> FitProblem::numbers_of(const simulation::SubjectModel& subje
 }
 
 double FitProblem::slope_of(const Parameter& parameter, const AnswerTable& table, int layout,
-                            int place, int answer, double lapse_rate, double lapse) const {
+                            int place, int answer, double lapse_derivative, double lapse) const {
   const auto classes = static_cast<std::size_t>(table.classes());
   if (parameter.kind == ParameterKind::lapse) {
     const double chance = 1.0 / static_cast<double>(classes);
-    const double felt = (table.answers(layout, place)[answer] - lapse * chance) / (1.0 - lapse);
-    return lapse_rate * (chance - felt);
+    const double felt_probability =
+        (table.answers(layout, place)[answer] - lapse * chance) / (1.0 - lapse);
+    return lapse_derivative * (chance - felt_probability);
   }
-  const auto by_bias = table.slopes(layout, place).subspan(answer * classes, classes);
+  const auto bias_slopes = table.slopes(layout, place).subspan(answer * classes, classes);
   if (parameter.kind == ParameterKind::class_bias) {
-    return by_bias[parameter.class_index] - by_bias[eliminated_];
+    return bias_slopes[parameter.class_index] - bias_slopes[eliminated_];
   }
   double sum = 0.0;
-  for (std::size_t c = 0; c < classes; ++c) sum += by_bias[c] * nearness_[layout][c];
+  for (std::size_t c = 0; c < classes; ++c) sum += bias_slopes[c] * nearness_[layout][c];
   return sum;
 }
 
-Optimum FitProblem::maximised(std::vector<double> start, const Bounds& bounds,
-                              const OptimiserOptions& options) const {
-  return maximise(
-      [this](std::span<const double> at, std::span<double> slopes) { return value(at, slopes); },
-      std::move(start), bounds, options);
+Optimum FitProblem::maximise_from(std::vector<double> start, const Bounds& bounds,
+                                  const OptimiserOptions& options) const {
+  return maximise([this](std::span<const double> point,
+                         std::span<double> slopes) { return value(point, slopes); },
+                  std::move(start), bounds, options);
 }
 
-FitProblem::Tangent FitProblem::tangent(std::span<const double> at, BankPart part) const {
-  const simulation::SubjectModel subject = subject_at(at);
+FitProblem::Tangent FitProblem::tangent(std::span<const double> point, BankPart part) const {
+  const simulation::SubjectModel subject = subject_at(point);
   const std::span<const PictureLayout> layouts = evidence_.layouts();
   Tangent tangent{model_.answers(subject, layouts, true, part), {}};
   const AnswerTable& table = tangent.table;
   const int classes = table.classes();
   const auto cells = static_cast<std::size_t>(table.stimuli()) * classes;
-  const double rate = lapse_slope(subject);
+  const double mean_lapse_slope = lapse_slope(subject);
   const double lapse = mean_lapse(subject);
-  simulation::SubjectModel noisier = subject;
-  noisier.feature_noise *= std::exp(kStep);
-  const bool by_noise =
+  simulation::SubjectModel noisier_subject = subject;
+  noisier_subject.feature_noise *= std::exp(kStep);
+  const bool noise_is_free =
       std::ranges::count(parameters_, Parameter{ParameterKind::feature_noise}) > 0;
-  const AnswerTable more = by_noise ? model_.answers(noisier, layouts, false, part) : table;
+  const AnswerTable noisier_table =
+      noise_is_free ? model_.answers(noisier_subject, layouts, false, part) : table;
   for (const Parameter& parameter : parameters_) {
     auto& slopes = tangent.slopes.emplace_back(layouts.size(), std::vector<double>(cells));
     for (int layout = 0; layout < static_cast<int>(layouts.size()); ++layout) {
@@ -166,27 +168,29 @@ FitProblem::Tangent FitProblem::tangent(std::span<const double> at, BankPart par
         const int answer = static_cast<int>(cell) % classes;
         slopes[layout][cell] =
             parameter.kind == ParameterKind::feature_noise
-                ? (more.answers(layout, place)[answer] - table.answers(layout, place)[answer]) /
+                ? (noisier_table.answers(layout, place)[answer] -
+                   table.answers(layout, place)[answer]) /
                       kStep
-                : slope_of(parameter, table, layout, place, answer, rate, lapse);
+                : slope_of(parameter, table, layout, place, answer, mean_lapse_slope, lapse);
       }
     }
   }
   return tangent;
 }
 
-double FitProblem::value(std::span<const double> at, std::span<double> slopes) const {
+double FitProblem::value(std::span<const double> point, std::span<double> slopes) const {
   if (slopes.empty()) {
-    return evidence_.log_likelihood(model_.answers(subject_at(at), evidence_.layouts()), nullptr);
+    return evidence_.log_likelihood(model_.answers(subject_at(point), evidence_.layouts()),
+                                    nullptr);
   }
-  const Tangent here = tangent(at);
-  Cells by_cell;
-  const double value = evidence_.log_likelihood(here.table, &by_cell);
+  const Tangent local_tangent = tangent(point);
+  Cells cell_slopes;
+  const double value = evidence_.log_likelihood(local_tangent.table, &cell_slopes);
   for (std::size_t i = 0; i < slopes.size(); ++i) {
     slopes[i] = 0.0;
-    for (std::size_t layout = 0; layout < by_cell.size(); ++layout) {
-      for (std::size_t cell = 0; cell < by_cell[layout].size(); ++cell) {
-        slopes[i] += by_cell[layout][cell] * here.slopes[i][layout][cell];
+    for (std::size_t layout = 0; layout < cell_slopes.size(); ++layout) {
+      for (std::size_t cell = 0; cell < cell_slopes[layout].size(); ++cell) {
+        slopes[i] += cell_slopes[layout][cell] * local_tangent.slopes[i][layout][cell];
       }
     }
   }

@@ -21,14 +21,14 @@ struct FreeParameters {
   bool position = true;
   bool classes = true;
   bool swaps = true;
-  bool spread = true;  ///< of noise between people; from participants' own answers
+  bool spread = true;  ///< of noise between people, estimated from each participant's answers
 };
 
 enum class ParameterKind { feature_noise, lapse, position, class_bias };
 
 struct Parameter {
   ParameterKind kind{};
-  int class_index = 0;  ///< of a class bias
+  int class_index = 0;  ///< only for a class bias
 
   friend bool operator==(const Parameter&, const Parameter&) = default;
 };
@@ -47,32 +47,32 @@ class FitProblem {
   [[nodiscard]] const Bounds& bounds() const noexcept { return bounds_; }
   /// Typical sizes of the numbers' changes.
   [[nodiscard]] std::vector<double> scales() const;
-  [[nodiscard]] simulation::SubjectModel subject_at(std::span<const double> at) const;
+  [[nodiscard]] simulation::SubjectModel subject_at(std::span<const double> point) const;
   /// The numbers of a subject, clamped to the bounds.
   [[nodiscard]] std::vector<double> numbers_of(const simulation::SubjectModel& subject) const;
   /// The log likelihood.
   /// \param slopes  empty, or receives the derivatives
-  [[nodiscard]] double value(std::span<const double> at, std::span<double> slopes) const;
+  [[nodiscard]] double value(std::span<const double> point, std::span<double> slopes) const;
 
-  /// The largest log likelihood found from a start.
-  [[nodiscard]] Optimum maximised(std::vector<double> start, const Bounds& bounds,
-                                  const OptimiserOptions& options) const;
+  /// Searches for the largest log likelihood from a start.
+  [[nodiscard]] Optimum maximise_from(std::vector<double> start, const Bounds& bounds,
+                                      const OptimiserOptions& options) const;
 
-  /// Probabilities and their derivatives by each number: a finite difference for the noise, exact
-  /// for the others.
+  /// Probabilities and their derivatives with respect to each number: a finite difference for the
+  /// noise, exact for the others.
   struct Tangent {
     AnswerTable table;
     std::vector<Cells> slopes;  ///< by number
   };
-  [[nodiscard]] Tangent tangent(std::span<const double> at, BankPart part = {}) const;
+  [[nodiscard]] Tangent tangent(std::span<const double> point, BankPart part = {}) const;
 
   [[nodiscard]] const AnswerModel& model() const noexcept { return model_; }
 
  private:
   void add(Parameter parameter, double lower, double upper);
-  /// d P / d number for one cell, for any parameter but feature_noise.
+  /// d P / d number for one cell, for any parameter other than feature_noise.
   [[nodiscard]] double slope_of(const Parameter& parameter, const AnswerTable& table, int layout,
-                                int place, int answer, double lapse_rate, double lapse) const;
+                                int place, int answer, double lapse_derivative, double lapse) const;
 
   const AnswerModel& model_;
   const FitEvidence& evidence_;

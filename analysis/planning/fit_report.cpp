@@ -27,15 +27,18 @@ std::string title_of(const ParameterEstimate& estimate) {
 std::string estimates_text(const SubjectFit& fit, const FitOrigin& origin) {
   analysis::TextTable table(
       {"parameter", "estimate", "95 %, profile", "95 %, simulated studies", "error of the bank"});
-  for (const ParameterEstimate& one : fit.estimates) {
+  for (const ParameterEstimate& estimate : fit.estimates) {
     const std::string simulated =
-        one.bootstrap ? fmt::format("[{:.3f}, {:.3f}]", one.bootstrap->low, one.bootstrap->high)
-                      : "-";
+        estimate.bootstrap
+            ? fmt::format("[{:.3f}, {:.3f}]", estimate.bootstrap->low, estimate.bootstrap->high)
+            : "-";
     // The error applies to ln(feature_noise).
-    const double error = one.monte_carlo_error * (one.name == "feature_noise" ? one.value : 1.0);
-    table.add({title_of(one), fmt::format("{:.3f}", one.value),
-               fmt::format("[{}, {}]", end_text(one.profile.lower), end_text(one.profile.upper)),
-               simulated, one.standard_error ? fmt::format("{:.3f}", error) : "-"});
+    const double error =
+        estimate.monte_carlo_error * (estimate.name == "feature_noise" ? estimate.value : 1.0);
+    table.add({title_of(estimate), fmt::format("{:.3f}", estimate.value),
+               fmt::format("[{}, {}]", end_text(estimate.profile.lower),
+                           end_text(estimate.profile.upper)),
+               simulated, estimate.standard_error ? fmt::format("{:.3f}", error) : "-"});
   }
   return analysis::heading("what the answers reveal about the participants", origin.simulated) +
          table.text();
@@ -55,13 +58,13 @@ std::string people_text(const SubjectFit& fit) {
 
 std::string swap_text(const SubjectFit& fit) {
   std::string text;
-  for (const SwapCandidate& one : fit.swaps) {
+  for (const SwapCandidate& candidate : fit.swaps) {
     text += analysis::wrapped(
         "  ",
         fmt::format(
             "pictures of \"{}\" and \"{}\" swapped: log likelihood {:+.1f}, {:.1f} needed: {}",
-            one.labels.first, one.labels.second, one.gain, fit.swap_threshold,
-            one.taken ? "taken" : "not taken"));
+            candidate.labels.first, candidate.labels.second, candidate.gain, fit.swap_threshold,
+            candidate.accepted ? "taken" : "not taken"));
   }
   return text;
 }
@@ -104,8 +107,8 @@ std::string biases_text(const simulation::SubjectModel& subject) {
   return text;
 }
 
-/// The devices for which the numbers hold: that of the answers if they are simulated, and that of
-/// the explorations, which always are.
+/// States the device of simulated answers, if any, and the device of the explorations, which are
+/// always simulated.
 std::string device_lines(const FitOrigin& origin) {
   return analysis::simulated_on_line(origin.answers_on) +
          (origin.felt_on.empty() ? "" : "explorations ") +
@@ -153,7 +156,7 @@ Json estimate_json(const ParameterEstimate& estimate) {
 
 Json estimates_json(const SubjectFit& fit) {
   Json all = Json::array();
-  for (const ParameterEstimate& one : fit.estimates) all.push_back(estimate_json(one));
+  for (const ParameterEstimate& estimate : fit.estimates) all.push_back(estimate_json(estimate));
   return all;
 }
 
@@ -177,22 +180,22 @@ Json device_json(const device::DeviceModel& model) {
 Json draws_json(const SubjectFit& fit) {
   Json all = Json::array();
   for (const simulation::SubjectModel& subject : fit.draws) {
-    const Json whole = Json::parse(simulation::subject_model_json(subject));
-    Json own;
-    for (const std::string_view key : kDrawnKeys) own[std::string(key)] = whole.at(key);
-    all.push_back(std::move(own));
+    const Json subject_object = Json::parse(simulation::subject_model_json(subject));
+    Json drawn;
+    for (const std::string_view key : kDrawnKeys) drawn[std::string(key)] = subject_object.at(key);
+    all.push_back(std::move(drawn));
   }
   return all;
 }
 
 Json swaps_json(const SubjectFit& fit) {
-  Json tried = Json::array();
-  for (const SwapCandidate& one : fit.swaps) {
-    tried.push_back({{"labels", {one.labels.first, one.labels.second}},
-                     {"gain", one.gain},
-                     {"taken", one.taken}});
+  Json candidates = Json::array();
+  for (const SwapCandidate& candidate : fit.swaps) {
+    candidates.push_back({{"labels", {candidate.labels.first, candidate.labels.second}},
+                          {"gain", candidate.gain},
+                          {"taken", candidate.accepted}});
   }
-  return {{"threshold", fit.swap_threshold}, {"tried", std::move(tried)}};
+  return {{"threshold", fit.swap_threshold}, {"tried", std::move(candidates)}};
 }
 
 Json confusions_json(const SubjectFit& fit) {
@@ -225,9 +228,9 @@ std::string fit_text(const AccuracyFit& fit, const FitOrigin& origin) {
   std::string text = device_lines(origin) + origin.study + ": a subject for published accuracies\n";
   analysis::TextTable table({"class", "published", "expected from the fit", "difference, points"});
   for (std::size_t c = 0; c < fit.classes.size(); ++c) {
-    table.add({fit.classes[c], analysis::share_figure(fit.wanted[c]),
-               analysis::share_figure(fit.reached[c]),
-               fmt::format("{:+.2f}", 100.0 * (fit.reached[c] - fit.wanted[c]))});
+    table.add({fit.classes[c], analysis::share_figure(fit.targets[c]),
+               analysis::share_figure(fit.expected_accuracies[c]),
+               fmt::format("{:+.2f}", 100.0 * (fit.expected_accuracies[c] - fit.targets[c]))});
   }
   text += table.text() + analysis::wrapped("  ", biases_text(fit.subject));
   const bool others_fit = fit.warnings.empty();
@@ -267,8 +270,9 @@ std::string fit_json(const AccuracyFit& fit, const FitOrigin& origin) {
   Json object = origin_json(origin);
   Json classes = Json::array();
   for (std::size_t c = 0; c < fit.classes.size(); ++c) {
-    classes.push_back(
-        {{"class", fit.classes[c]}, {"wanted", fit.wanted[c]}, {"reached", fit.reached[c]}});
+    classes.push_back({{"class", fit.classes[c]},
+                       {"wanted", fit.targets[c]},
+                       {"reached", fit.expected_accuracies[c]}});
   }
   object["accuracies"] = std::move(classes);
   object["parameters"] = fit.parameters;

@@ -17,14 +17,15 @@ inline constexpr std::array<std::string_view, 3> kDrawnKeys{"feature_noise", "la
 struct FitOrigin {
   std::string study;
   std::string subject;     ///< file of the subject model that the search started from
-  bool simulated = false;  ///< the answers are those of simulated participants
+  bool simulated = false;  ///< whether the participants were simulated
   bool pilot = false;
   bool interim = false;
   int explorations = 0;
   int directions = 0;
   std::uint64_t seed = 0;
-  std::string answers_on{};  ///< analysis::device_words of the answers; empty: real participants
-  std::string felt_on{};     ///< analysis::device_words of the subject that feels
+  std::string answers_on{};  ///< device of simulated participants (analysis::device_words); empty
+                             ///< for real ones
+  std::string felt_on{};     ///< device of the explorations (analysis::device_words)
 };
 
 /// Tables for a terminal; ends with a line feed.

@@ -29,7 +29,7 @@ struct SwapSearch {
 /// a coarse grid of noise and lapse, fits the two best, and takes the better one if its gain
 /// exceeds the threshold. The odds for a swap are then 20 to 1 even if, beforehand, a swap of some
 /// pair was only as likely as none.
-/// \param subject  start of the search; its own swaps are dropped if swaps are free
+/// \param subject  start of the search; its swaps are dropped if swaps are free
 [[nodiscard]] SwapSearch search_swaps(const AnswerModel& model, const FitEvidence& evidence,
                                       simulation::SubjectModel subject, const FreeParameters& free);
 

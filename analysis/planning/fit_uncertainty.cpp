@@ -10,7 +10,7 @@ namespace {
 
 /// Fisher's information about the numbers, row-major.
 std::vector<double> information_of(const FitCounts& counts, const FitProblem::Tangent& tangent) {
-  const Cells sums = by_layout(counts, counts.people);
+  const Cells sums = counts_by_layout(counts, counts.people);
   const auto& [table, slopes] = tangent;
   const auto classes = static_cast<std::size_t>(table.classes());
   std::vector<double> information(slopes.size() * slopes.size(), 0.0);
@@ -50,23 +50,22 @@ std::optional<std::vector<double>> inverse_of(std::vector<double> matrix, std::s
 
 /// Square root of 3.84, the 95 % point of chi-square with one degree of freedom.
 constexpr double kNormalQuantile = 1.959964;
-constexpr double kCloseEnough = 0.02;
+constexpr double kRootTolerance = 0.02;
 constexpr int kMaxFits = 12;
-/// An end closer to a bound than this is the bound itself, which carries no information about the
-/// data.
+/// An end closer to a bound than this is the bound itself, and not determined by the data.
 constexpr double kBoundTolerance = 1e-6;
 /// In standard errors; only failed fits end closer to the best point.
-constexpr double kCollapsed = 1e-3;
+constexpr double kMinEndDistance = 1e-3;
 
 /// The best point with one number fixed. `root` is the square root of twice the loss of log
 /// likelihood.
 struct ConstrainedFit {
-  std::vector<double> at;
+  std::vector<double> point;
   double root = 0.0;
 };
 
-ConstrainedFit fitted_with(const Fitted& fitted, std::size_t number, double value,
-                           const std::vector<double>& start) {
+ConstrainedFit constrained_fit(const FittedProblem& fitted, std::size_t number, double value,
+                               const std::vector<double>& start) {
   Bounds bounds = fitted.problem.bounds();
   bounds.lower[number] = value;
   bounds.upper[number] = value;
@@ -74,64 +73,68 @@ ConstrainedFit fitted_with(const Fitted& fitted, std::size_t number, double valu
   for (std::size_t i = 0; i < start.size(); ++i) {
     options.scales.push_back(std::sqrt(fitted.covariance[i * start.size() + i]));
   }
-  const Optimum held = fitted.problem.maximised(start, bounds, options);
-  return {held.at, std::sqrt(std::max(0.0, 2.0 * (fitted.best.value - held.value)))};
+  const Optimum constrained = fitted.problem.maximise_from(start, bounds, options);
+  return {constrained.point,
+          std::sqrt(std::max(0.0, 2.0 * (fitted.best.value - constrained.value)))};
 }
 
 /// The best point with one number changed and the others moved along by the covariance.
-std::vector<double> moved(const Fitted& fitted, std::size_t number, double value) {
-  std::vector<double> start = fitted.best.at;
+std::vector<double> start_along_covariance(const FittedProblem& fitted, std::size_t number,
+                                           double value) {
+  std::vector<double> start = fitted.best.point;
   const std::size_t n = start.size();
   const double variance = fitted.covariance[number * n + number];
   for (std::size_t i = 0; i < n; ++i) {
-    start[i] += fitted.covariance[i * n + number] / variance * (value - fitted.best.at[number]);
+    start[i] += fitted.covariance[i * n + number] / variance * (value - fitted.best.point[number]);
   }
   start[number] = value;
   return start;
 }
 
 /// Refits from the best point if a bad start left the likelihood too low.
-ConstrainedFit best_with(const Fitted& fitted, std::size_t number, double value,
-                         const std::vector<double>& start) {
-  ConstrainedFit held = fitted_with(fitted, number, value, start);
-  if (held.root < kNormalQuantile) return held;
-  std::vector<double> plain = fitted.best.at;
-  plain[number] = value;
-  ConstrainedFit again = fitted_with(fitted, number, value, plain);
-  return again.root < held.root ? again : held;
+ConstrainedFit best_constrained_fit(const FittedProblem& fitted, std::size_t number, double value,
+                                    const std::vector<double>& start) {
+  ConstrainedFit constrained = constrained_fit(fitted, number, value, start);
+  if (constrained.root < kNormalQuantile) return constrained;
+  std::vector<double> best_start = fitted.best.point;
+  best_start[number] = value;
+  ConstrainedFit refit = constrained_fit(fitted, number, value, best_start);
+  return refit.root < constrained.root ? refit : constrained;
 }
 
 /// Follows secants from the best point: the roots are nearly linear in the value.
 /// \return nothing if there is no end between the best point and the bound
-std::optional<double> end_of(const Fitted& fitted, std::size_t number, double bound, double sign) {
-  const double middle = fitted.best.at[number];
-  const double deviation = std::sqrt(fitted.covariance[number * fitted.best.at.size() + number]);
-  const auto inside = [&](double value) {
+std::optional<double> interval_end(const FittedProblem& fitted, std::size_t number, double bound,
+                                   double sign) {
+  const double best_value = fitted.best.point[number];
+  const double deviation = std::sqrt(fitted.covariance[number * fitted.best.point.size() + number]);
+  const auto within_bound = [&](double value) {
     return sign > 0.0 ? std::min(value, bound) : std::max(value, bound);
   };
   const auto is_end = [&](double value) {
     return std::abs(value - bound) > kBoundTolerance &&
-           std::abs(value - middle) > kCollapsed * deviation;
+           std::abs(value - best_value) > kMinEndDistance * deviation;
   };
-  double near = middle;
-  double near_root = 0.0;
-  double value = inside(middle + sign * kNormalQuantile * deviation);
-  std::vector<double> start = moved(fitted, number, value);
+  double previous_value = best_value;
+  double previous_root = 0.0;
+  double value = within_bound(best_value + sign * kNormalQuantile * deviation);
+  std::vector<double> start = start_along_covariance(fitted, number, value);
   for (int fit = 0; fit < kMaxFits; ++fit) {
-    const ConstrainedFit held = best_with(fitted, number, value, start);
-    if (std::abs(held.root - kNormalQuantile) < kCloseEnough) {
+    const ConstrainedFit constrained = best_constrained_fit(fitted, number, value, start);
+    if (std::abs(constrained.root - kNormalQuantile) < kRootTolerance) {
       return is_end(value) ? std::optional(value) : std::nullopt;
     }
-    if (held.root < kNormalQuantile && value == bound) return std::nullopt;
-    const double rise = (held.root - near_root) / (value - near);
-    const double farthest = middle + 3.0 * (value - middle) + sign * 0.1 * deviation;
-    double next = sign * rise > 0.0 ? value + (kNormalQuantile - held.root) / rise : farthest;
-    if (sign * (next - farthest) > 0.0) next = farthest;
-    if (sign * (next - middle) <= 0.0) next = 0.5 * (middle + value);
-    start = held.at;
-    near = value;
-    near_root = held.root;
-    value = inside(next);
+    if (constrained.root < kNormalQuantile && value == bound) return std::nullopt;
+    const double rise = (constrained.root - previous_root) / (value - previous_value);
+    const double farthest_step = best_value + 3.0 * (value - best_value) + sign * 0.1 * deviation;
+    double next =
+        sign * rise > 0.0 ? value + (kNormalQuantile - constrained.root) / rise : farthest_step;
+    if (sign * (next - farthest_step) > 0.0) next = farthest_step;
+    if (sign * (next - best_value) <= 0.0) next = 0.5 * (best_value + value);
+    start = constrained.point;
+    previous_value = value;
+    previous_root = constrained.root;
+    value = within_bound(next);
     start[number] = value;
   }
   return std::nullopt;
@@ -139,43 +142,44 @@ std::optional<double> end_of(const Fitted& fitted, std::size_t number, double bo
 
 }  // namespace
 
-Fitted fitted_at(const FitProblem& problem, const FitCounts& counts, Optimum best) {
-  FitProblem::Tangent tangent = problem.tangent(best.at);
+FittedProblem fitted_problem(const FitProblem& problem, const FitCounts& counts, Optimum best) {
+  FitProblem::Tangent tangent = problem.tangent(best.point);
   std::vector<double> information = information_of(counts, tangent);
-  const std::size_t n = best.at.size();
+  const std::size_t n = best.point.size();
   auto covariance = inverse_of(information, n);
   // In a direction without information, the profile's search begins ten units away.
-  constexpr double kVague = 0.01;
-  for (std::size_t i = 0; i < n; ++i) information[i * n + i] += kVague;
-  auto vague = inverse_of(std::move(information), n);
+  constexpr double kRidge = 0.01;
+  for (std::size_t i = 0; i < n; ++i) information[i * n + i] += kRidge;
+  auto regularised_inverse = inverse_of(std::move(information), n);
   return {problem,
           counts,
           std::move(best),
           std::move(tangent),
           covariance.has_value(),
-          covariance ? std::move(*covariance) : vague.value_or(std::vector<double>(n * n, 0.0))};
+          covariance ? std::move(*covariance)
+                     : regularised_inverse.value_or(std::vector<double>(n * n, 0.0))};
 }
 
-OpenInterval profile_interval(const Fitted& fitted, std::size_t number) {
+OpenInterval profile_interval(const FittedProblem& fitted, std::size_t number) {
   const auto end = [&](double bound, double sign) -> std::optional<double> {
-    if (fitted.best.at[number] == bound) return std::nullopt;
-    return end_of(fitted, number, bound, sign);
+    if (fitted.best.point[number] == bound) return std::nullopt;
+    return interval_end(fitted, number, bound, sign);
   };
   const Bounds& bounds = fitted.problem.bounds();
   return {end(bounds.lower[number], -1.0), end(bounds.upper[number], 1.0)};
 }
 
-std::vector<double> monte_carlo_errors(const Fitted& fitted) {
+std::vector<double> monte_carlo_errors(const FittedProblem& fitted) {
   constexpr int kBankParts = 8;
-  const std::size_t n = fitted.best.at.size();
+  const std::size_t n = fitted.best.point.size();
   std::vector<double> squares(n, 0.0);
-  if (!fitted.informed) return squares;
+  if (!fitted.identifiable) return squares;
   const FitProblem& problem = fitted.problem;
-  const simulation::SubjectModel subject = problem.subject_at(fitted.best.at);
-  const Cells counts = by_layout(fitted.counts, fitted.counts.people);
+  const simulation::SubjectModel subject = problem.subject_at(fitted.best.point);
+  const Cells counts = counts_by_layout(fitted.counts, fitted.counts.people);
   const std::size_t classes = fitted.counts.classes.size();
   for (int part = 0; part < kBankParts; ++part) {
-    const AnswerTable own =
+    const AnswerTable part_table =
         problem.model().answers(subject, fitted.counts.layouts, false, {part, kBankParts});
     std::vector<double> score(n, 0.0);
     for (std::size_t layout = 0; layout < counts.size(); ++layout) {
@@ -184,8 +188,8 @@ std::vector<double> monte_carlo_errors(const Fitted& fitted) {
         const std::size_t answer = cell % classes;
         const double presented = presentations(counts[layout], cell - answer, classes);
         const double p = fitted.tangent.table.answers(static_cast<int>(layout), place)[answer];
-        const double apart = own.answers(static_cast<int>(layout), place)[answer] - p;
-        const double weight = presented * apart / std::max(p, kMinProbability);
+        const double difference = part_table.answers(static_cast<int>(layout), place)[answer] - p;
+        const double weight = presented * difference / std::max(p, kMinProbability);
         for (std::size_t i = 0; i < n; ++i) {
           score[i] += weight * fitted.tangent.slopes[i][layout][cell];
         }

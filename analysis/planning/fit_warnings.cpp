@@ -10,9 +10,9 @@
 namespace touchtrial::planning {
 namespace {
 
-constexpr double kHardlyApart = 0.9;
-constexpr double kMisfit = 0.05;
-constexpr double kGuessing = 0.05;
+constexpr double kHighCorrelation = 0.9;
+constexpr double kMisfitLevel = 0.05;
+constexpr double kGuessingLevel = 0.05;
 constexpr double kLargeMonteCarloShare = 0.3;
 
 /// Sums of confusions by presented and by answered class.
@@ -24,7 +24,7 @@ struct Margins {
       for (std::size_t a = 0; a < table.size(); ++a) {
         presented[c] += table[c][a];
         answered[a] += table[c][a];
-        all += table[c][a];
+        total += table[c][a];
       }
       correct += table[c][c];
     }
@@ -32,7 +32,7 @@ struct Margins {
 
   std::vector<double> presented;
   std::vector<double> answered;
-  double all = 0.0;
+  double total = 0.0;
   double correct = 0.0;
 };
 
@@ -50,7 +50,7 @@ const ParameterEstimate* estimate_of(const SubjectFit& fit, std::string_view nam
 
 void warn_of_extremes(const SubjectFit& fit, std::vector<std::string>& warnings) {
   const Margins margins = margins_of(fit);
-  if (margins.correct == margins.all) {
+  if (margins.correct == margins.total) {
     warnings.push_back(
         "every answer is right: noise and lapses have no lower limit, and the biases are "
         "arbitrary");
@@ -72,19 +72,19 @@ void warn_of_guessing(const SubjectFit& fit, std::vector<std::string>& warnings)
     for (std::size_t c = 0; c < method.size(); ++c) {
       for (std::size_t a = 0; a < method.size(); ++a) {
         const double expected =
-            margins.all > 0.0 ? margins.presented[c] * margins.answered[a] / margins.all : 0.0;
+            margins.total > 0.0 ? margins.presented[c] * margins.answered[a] / margins.total : 0.0;
         if (expected > 0.0) chi_square += std::pow(method[c][a] - expected, 2) / expected;
       }
     }
-    const auto some = [](double count) { return count > 0.0; };
-    const auto rows = static_cast<int>(std::ranges::count_if(margins.presented, some));
-    const auto columns = static_cast<int>(std::ranges::count_if(margins.answered, some));
+    const auto is_positive = [](double count) { return count > 0.0; };
+    const auto rows = static_cast<int>(std::ranges::count_if(margins.presented, is_positive));
+    const auto columns = static_cast<int>(std::ranges::count_if(margins.answered, is_positive));
     freedom += std::max(0, rows - 1) * std::max(0, columns - 1);
   }
   if (freedom > 0) {
     const boost::math::chi_squared_distribution<> distribution(freedom);
     const double p = boost::math::cdf(boost::math::complement(distribution, chi_square));
-    if (p <= kGuessing) return;
+    if (p <= kGuessingLevel) return;
   }
   warnings.push_back(
       "the answers cannot be distinguished from guessing: they do not depend on the stimulus "
@@ -93,16 +93,16 @@ void warn_of_guessing(const SubjectFit& fit, std::vector<std::string>& warnings)
 
 /// Warns if people differ more, or less, than in the subject model.
 void warn_of_spread(const SubjectFit& fit, std::vector<std::string>& warnings) {
-  if (!fit.people || fit.people->assumed_p > kMisfit) return;
-  const std::string what = fmt::format(
+  if (!fit.people || fit.people->assumed_p > kMisfitLevel) return;
+  const std::string difference = fmt::format(
       "participants differ {} than in the subject model (spread of noise {:.2f}, p = {:.3g})",
       fit.people->spread > fit.assumed_spread ? "more" : "less", fit.assumed_spread,
       fit.people->assumed_p);
   warnings.push_back(
       fit.spread_replaced
-          ? what + fmt::format(": everything was fitted with the estimated spread, {:.2f}",
-                               fit.people->spread)
-          : what + ": the fit does not describe these people; leave out --fix spread");
+          ? difference + fmt::format(": everything was fitted with the estimated spread, {:.2f}",
+                                     fit.people->spread)
+          : difference + ": the fit does not describe these people; leave out --fix spread");
 }
 
 void warn_of_classes(const SubjectFit& fit, std::vector<std::string>& warnings) {
@@ -135,9 +135,9 @@ void warn_of_open_ends(const SubjectFit& fit, std::vector<std::string>& warnings
                      names + "; the interval is open there");
 }
 
-void warn_of_flatness(const SubjectFit& fit, std::vector<std::string>& warnings) {
+void warn_of_weak_estimates(const SubjectFit& fit, std::vector<std::string>& warnings) {
   const auto r = fit.noise_lapse_correlation;
-  if (r && std::abs(*r) > kHardlyApart) {
+  if (r && std::abs(*r) > kHighCorrelation) {
     warnings.push_back(
         fmt::format("noise and lapse can hardly be distinguished (their estimates correlate "
                     "{:.2f}): fix one of them with --fix",
@@ -162,7 +162,7 @@ void warn_of_flatness(const SubjectFit& fit, std::vector<std::string>& warnings)
 
 }  // namespace
 
-std::string keys_that_fits_ignore(const simulation::SubjectModel& subject) {
+std::string keys_ignored_by_fits(const simulation::SubjectModel& subject) {
   using simulation::Training;
   std::vector<std::string> keys;
   if (subject.training == Training::own) keys.emplace_back("training");
@@ -192,7 +192,7 @@ std::vector<std::string> fit_warnings(const FitCounts& counts, const SubjectFit&
   warn_of_extremes(fit, warnings);
   warn_of_guessing(fit, warnings);
   warn_of_classes(fit, warnings);
-  warn_of_flatness(fit, warnings);
+  warn_of_weak_estimates(fit, warnings);
   warn_of_open_ends(fit, warnings);
   if (const ParameterEstimate* lapse = estimate_of(fit, "lapse"); lapse && lapse->value == 0.0) {
     warnings.push_back(
@@ -203,13 +203,13 @@ std::vector<std::string> fit_warnings(const FitCounts& counts, const SubjectFit&
         "noise, lapse and bias are assumed equal for all methods, which differ only in their "
         "textures");
   }
-  if (const std::string ignored = keys_that_fits_ignore(fit.subject); !ignored.empty()) {
+  if (const std::string ignored = keys_ignored_by_fits(fit.subject); !ignored.empty()) {
     warnings.push_back(
         "the fit assumes that all trials of a person are equivalent, and one training for "
         "everybody; it ignores the subject model's values of " +
         ignored + ", so the estimated noise is that of an average trial");
   }
-  if (fit.p && *fit.p < kMisfit) {
+  if (fit.p && *fit.p < kMisfitLevel) {
     warnings.push_back(
         fmt::format("the model does not fit the confusions (p = {:.3f}): its parameters do not "
                     "describe these answers",

@@ -28,26 +28,26 @@ using simulation::PlaneLevels;
 using simulation::StimulusLevel;
 using simulation::StimulusLevels;
 
-constexpr std::size_t kMaxCompared = 40;
+constexpr std::size_t kMaxComparedStimuli = 40;
 constexpr const char* kBlank = "blank plane";
 
 constexpr const char* kTitle = "Strength of the stimuli";
-constexpr const char* kWhatItIs =
+constexpr const char* kCurveNote =
     "Decibels by which a stimulus's gain lies above the one at which a simulated person "
     "distinguishes it from the blank plane with 79 % right in three intervals, from one published "
     "curve of thresholds to "
     "the other: the conservative one (tan_1994) and the sensitive one (israr_2006). The blank "
     "plane itself: power above the curve. Vibrations are those of the tip of a modelled device in "
     "a simulated hand.";
-constexpr const char* kWhatPilotsSay =
+constexpr const char* kPilotNote =
     "Decibels by which a stimulus's gain lies above the one at which people of this laboratory, on "
     "its device, would distinguish it from the blank plane with 79 % right in three intervals: the "
     "thresholds of its detection study (/rendering/gains/curve), carried to these stimuli by a "
     "modelled device in a simulated hand. The blank plane itself: power above the curve.";
-constexpr const char* kWhatSimulatedPilotsSay =
+constexpr const char* kSimulatedPilotNote =
     "SIMULATED: decibels above the level that simulated pilots distinguish from the blank plane "
     "with 79 % right in three intervals; a rehearsal of the detection study with people.";
-constexpr const char* kWhoseItIs =
+constexpr const char* kProvisionalNote =
     "Provisional, until a detection study with pilot participants replaces the curve "
     "(docs/perception.md). The curves were measured on other people with passive, steady "
     "vibrations; active movement raises thresholds. They are not validated until they predict "
@@ -62,13 +62,13 @@ std::vector<std::string> devices_of(const StimulusLevels& levels) {
 }
 
 std::string range_cell(double low_db, double high_db) {
-  constexpr double kNothingDb = -60.0;
-  if (high_db < kNothingDb) return "none";
-  const auto whole = [](double db) {
-    return db < kNothingDb ? "none" : fmt::format("{}", static_cast<int>(std::lround(db)));
+  constexpr double kNegligibleDb = -60.0;
+  if (high_db < kNegligibleDb) return "none";
+  const auto rounded = [](double db) {
+    return db < kNegligibleDb ? "none" : fmt::format("{}", static_cast<int>(std::lround(db)));
   };
-  const std::string low = whole(low_db);
-  const std::string high = whole(high_db);
+  const std::string low = rounded(low_db);
+  const std::string high = rounded(high_db);
   return low == high ? low : low + " to " + high;
 }
 
@@ -90,28 +90,28 @@ std::string band_cell(const PlaneLevels& levels, std::size_t band) {
 template <typename CellOf>
 void add_rows(analysis::Table& table, const study::Study& study, const StimulusLevels& levels,
               std::size_t columns, const CellOf& cell_of) {
-  const auto row = [&](const std::string& name, const PlaneLevels& own) {
+  const auto add_row = [&](const std::string& name, const PlaneLevels& plane) {
     std::vector<analysis::Cell> cells{name};
-    for (std::size_t i = 0; i < columns; ++i) cells.emplace_back(cell_of(own, i));
+    for (std::size_t i = 0; i < columns; ++i) cells.emplace_back(cell_of(plane, i));
     table.rows.push_back(std::move(cells));
   };
   for (std::size_t i = 0; i < levels.stimuli.size(); ++i) {
-    row(name_of_stimulus(study, levels.stimuli[i]), levels.levels[i]);
+    add_row(name_of_stimulus(study, levels.stimuli[i]), levels.levels[i]);
   }
-  row(kBlank, levels.blank);
+  add_row(kBlank, levels.blank);
 }
 
 /// The gain factor at which every stimulus reaches the required level by both curves.
-std::string gain_needed(const StimulusLevels& levels, const std::string& device) {
+std::string required_gain(const StimulusLevels& levels, const std::string& device) {
   double low_db = 1e9;
-  for (const PlaneLevels& own : levels.levels) {
-    low_db = std::min(low_db, simulation::range_on(own, device).low_db);
+  for (const PlaneLevels& plane : levels.levels) {
+    low_db = std::min(low_db, simulation::range_on(plane, device).low_db);
   }
   if (low_db <= simulation::kNoLevelDb) return "none";
   return fmt::format("x {:.2f}", std::pow(10.0, (simulation::kMinLevelDb - low_db) / 20.0));
 }
 
-analysis::Table table_in_all(const study::Study& study, const StimulusLevels& levels) {
+analysis::Table level_table(const study::Study& study, const StimulusLevels& levels) {
   analysis::Table table{"levels",
                         levels.simulated_pilots ? "Levels above simulated pilots' threshold, dB"
                         : levels.provisional    ? "Provisional levels above the threshold, dB"
@@ -120,15 +120,15 @@ analysis::Table table_in_all(const study::Study& study, const StimulusLevels& le
   const std::vector<std::string> devices = devices_of(levels);
   for (const std::string& device : devices) table.columns.push_back({device});
   add_rows(table, study, levels, devices.size(),
-           [&](const PlaneLevels& own, std::size_t i) { return range_cell(own, devices[i]); });
+           [&](const PlaneLevels& plane, std::size_t i) { return range_cell(plane, devices[i]); });
   std::vector<analysis::Cell> gains{"gain for 10 dB"};
   for (const std::string& device : devices) {
-    gains.emplace_back(gain_needed(levels, device));
+    gains.emplace_back(required_gain(levels, device));
   }
   table.rows.push_back(std::move(gains));
-  table.notes = {{levels.simulated_pilots ? kWhatSimulatedPilotsSay
-                  : levels.provisional    ? kWhatItIs
-                                          : kWhatPilotsSay},
+  table.notes = {{levels.simulated_pilots ? kSimulatedPilotNote
+                  : levels.provisional    ? kCurveNote
+                                          : kPilotNote},
                  {"Gains multiplied by the number in the last row would raise every stimulus to 10 "
                   "dB, as far as motors and stability allow."}};
   if (study.trials.rove_db > 0.0) {
@@ -136,11 +136,11 @@ analysis::Table table_in_all(const study::Study& study, const StimulusLevels& le
         "For the middle of the {:g} dB range over which gains are roved (/trials/rove_db).",
         study.trials.rove_db)});
   }
-  if (levels.provisional) table.notes.push_back({kWhoseItIs});
+  if (levels.provisional) table.notes.push_back({kProvisionalNote});
   return table;
 }
 
-analysis::Table table_by_bands(const study::Study& study, const StimulusLevels& levels) {
+analysis::Table band_table(const study::Study& study, const StimulusLevels& levels) {
   analysis::Table table{
       "levels-by-band",
       "Power by frequency above the curve, or the blank plane where that is stronger, dB",
@@ -152,7 +152,7 @@ analysis::Table table_by_bands(const study::Study& study, const StimulusLevels& 
   return table;
 }
 
-/// Levels of one stimulus minus those of another on a device, by curve.
+/// The level of one stimulus minus the level of another on a device, by curve.
 std::vector<double> differences_db(const PlaneLevels& one, const PlaneLevels& other,
                                    const std::string& device) {
   std::vector<double> differences;
@@ -171,10 +171,11 @@ std::string nearest_words(const study::Study& study, const StimulusLevels& level
   for (std::size_t a = 0; a < levels.stimuli.size(); ++a) {
     for (std::size_t b = a + 1; b < levels.stimuli.size(); ++b) {
       if (levels.stimuli[a].class_index == levels.stimuli[b].class_index) continue;
-      const std::vector<double> apart = differences_db(levels.levels[a], levels.levels[b], device);
+      const std::vector<double> level_differences =
+          differences_db(levels.levels[a], levels.levels[b], device);
       double low_db = 1e9;
       double high_db = 0.0;
-      for (const double db : apart) {
+      for (const double db : level_differences) {
         low_db = std::min(low_db, std::abs(db));
         high_db = std::max(high_db, std::abs(db));
       }
@@ -195,22 +196,22 @@ struct StrengthSense {
 
   StrengthSense() {
     const simulation::SubjectModel person = simulation::default_subject();
-    const engine::FeltNoise own{person.feature_noise, person.common_noise};
-    floor = simulation::floor_of(own, 0.0).floor;
-    noise = simulation::strength_noise(own);
+    const engine::FeltNoise felt_noise{person.feature_noise, person.common_noise};
+    floor = simulation::floor_of(felt_noise, 0.0).floor;
+    noise = simulation::strength_noise(felt_noise);
   }
   [[nodiscard]] double strength(double level_db) const {
     return 0.5 * std::log(std::pow(10.0, level_db / 10.0) + floor);
   }
 };
 
-/// A stimulus for an observer who judges by strength alone.
+/// A stimulus for an observer who judges only by strength.
 struct StrengthStimulus {
-  double level_db;  ///< at its own gain
+  double level_db;  ///< at its nominal gain
   int class_index;
 };
 
-/// Evenly spaced gains relative to a stimulus's own.
+/// Evenly spaced gains relative to the nominal gain.
 std::vector<double> roved_gains_db(double rove_db) {
   constexpr int kGains = 128;
   if (rove_db == 0.0) return {0.0};
@@ -227,35 +228,37 @@ double accuracy_by_strength(std::vector<StrengthStimulus> stimuli, const Strengt
   for (const StrengthStimulus& one : stimuli) strengths.push_back(sense.strength(one.level_db));
   const boost::math::normal normal;
   const std::vector<double> gains_db = roved_gains_db(rove_db);
-  double right = 0.0;
-  for (const StrengthStimulus& shown : stimuli) {
+  double correct = 0.0;
+  for (const StrengthStimulus& stimulus : stimuli) {
     for (const double gain_db : gains_db) {
-      const double strength = sense.strength(shown.level_db + gain_db);
-      const auto below = [&](std::size_t edge) {
+      const double strength = sense.strength(stimulus.level_db + gain_db);
+      const auto probability_below = [&](std::size_t edge) {
         if (edge == 0) return 0.0;
         if (edge == stimuli.size()) return 1.0;
         const double middle = 0.5 * (strengths[edge - 1] + strengths[edge]);
         return boost::math::cdf(normal, (middle - strength) / sense.noise);
       };
       for (std::size_t i = 0; i < stimuli.size(); ++i) {
-        if (stimuli[i].class_index == shown.class_index) right += below(i + 1) - below(i);
+        if (stimuli[i].class_index == stimulus.class_index)
+          correct += probability_below(i + 1) - probability_below(i);
       }
     }
   }
-  return right / static_cast<double>(stimuli.size() * gains_db.size());
+  return correct / static_cast<double>(stimuli.size() * gains_db.size());
 }
 
 /// The accuracy possible from level alone, by device, curve and method.
-struct LevelAlone {
+struct LevelAccuracy {
   std::string device;
   engine::ThresholdCurve curve;
   int method;
-  double right;
+  double accuracy;
 };
 
-std::vector<LevelAlone> by_level_alone(const study::Study& study, const StimulusLevels& levels) {
-  std::vector<LevelAlone> found;
-  if (study.classes.size() < 2 || !study::chooses_classes(study)) return found;
+std::vector<LevelAccuracy> accuracies_by_level(const study::Study& study,
+                                               const StimulusLevels& levels) {
+  std::vector<LevelAccuracy> accuracies;
+  if (study.classes.size() < 2 || !study::chooses_classes(study)) return accuracies;
   const StrengthSense sense;
   for (std::size_t place = 0; place < levels.blank.size(); ++place) {
     for (int method = 0; method < study.presented_methods(); ++method) {
@@ -265,23 +268,23 @@ std::vector<LevelAlone> by_level_alone(const study::Study& study, const Stimulus
         stimuli.push_back({levels.levels[i][place].db, levels.stimuli[i].class_index});
       }
       if (stimuli.empty()) continue;
-      found.push_back({levels.blank[place].device, levels.blank[place].curve, method,
-                       accuracy_by_strength(std::move(stimuli), sense, study.trials.rove_db)});
+      accuracies.push_back({levels.blank[place].device, levels.blank[place].curve, method,
+                            accuracy_by_strength(std::move(stimuli), sense, study.trials.rove_db)});
     }
   }
-  return found;
+  return accuracies;
 }
 
-std::string level_alone_words(const study::Study& study, const StimulusLevels& levels) {
-  const std::vector<LevelAlone> all = by_level_alone(study, levels);
+std::string level_accuracy_words(const study::Study& study, const StimulusLevels& levels) {
+  const std::vector<LevelAccuracy> all = accuracies_by_level(study, levels);
   std::string words;
   for (const std::string& device : devices_of(levels)) {
     double low = 1.0;
     double high = 0.0;
-    for (const LevelAlone& one : all) {
+    for (const LevelAccuracy& one : all) {
       if (one.device != device) continue;
-      low = std::min(low, one.right);
-      high = std::max(high, one.right);
+      low = std::min(low, one.accuracy);
+      high = std::max(high, one.accuracy);
     }
     if (high < low) continue;
     words += fmt::format("{}{}: {:.0f} to {:.0f} %", words.empty() ? "" : "; ", device, 100.0 * low,
@@ -320,7 +323,7 @@ Json json_of(const PlaneLevels& levels) {
 
 Json json_of_differences(const study::Study& study, const StimulusLevels& levels) {
   Json list = Json::array();
-  if (levels.stimuli.size() > kMaxCompared) return list;
+  if (levels.stimuli.size() > kMaxComparedStimuli) return list;
   for (std::size_t a = 0; a < levels.stimuli.size(); ++a) {
     for (std::size_t b = a + 1; b < levels.stimuli.size(); ++b) {
       for (std::size_t i = 0; i < levels.blank.size(); ++i) {
@@ -335,13 +338,13 @@ Json json_of_differences(const study::Study& study, const StimulusLevels& levels
   return list;
 }
 
-Json json_by_level_alone(const study::Study& study, const StimulusLevels& levels) {
+Json json_of_level_accuracies(const study::Study& study, const StimulusLevels& levels) {
   Json list = Json::array();
-  for (const LevelAlone& one : by_level_alone(study, levels)) {
+  for (const LevelAccuracy& one : accuracies_by_level(study, levels)) {
     list.push_back({{"device", one.device},
                     {"curve", engine::name_of(one.curve)},
                     {"method", study.methods[static_cast<std::size_t>(one.method)].label},
-                    {"right", one.right}});
+                    {"right", one.accuracy}});
   }
   return list;
 }
@@ -359,11 +362,10 @@ Json json_of_all(const study::Study& study, const StimulusLevels& levels) {
           {"stimuli", std::move(stimuli)},
           {"blank", json_of(levels.blank)},
           {"differences", json_of_differences(study, levels)},
-          {"by_level_alone", json_by_level_alone(study, levels)}};
+          {"by_level_alone", json_of_level_accuracies(study, levels)}};
 }
 
-/// Whether a session was felt on the model of this device, or on a device with a driver of this
-/// name.
+/// Whether any session used this device or the model of it.
 bool is_used(const std::string& device, const analysis::Collection& collection) {
   const std::string recorded = device == "ideal" ? "simulated" : "simulated " + device;
   return std::ranges::any_of(collection.sessions, [&](const analysis::SessionRecord& session) {
@@ -371,8 +373,8 @@ bool is_used(const std::string& device, const analysis::Collection& collection) 
   });
 }
 
-/// For the methods: on each device that was used, from the weakest stimulus by one curve to the
-/// strongest by any.
+/// A sentence for the methods section: the range of levels on each device that was used, over all
+/// stimuli and curves.
 std::string levels_sentence(const StimulusLevels& levels, const analysis::Collection& collection) {
   const std::vector<std::string> devices = devices_of(levels);
   std::vector<std::string> ranges;
@@ -397,14 +399,14 @@ std::string levels_sentence(const StimulusLevels& levels, const analysis::Collec
                          : "by thresholds measured in this laboratory");
 }
 
-/// The section with everything folded except its warnings.
-analysis::Section folded(analysis::Section section) {
-  std::vector<analysis::Block> shown;
+/// Folds every block of the section except warnings.
+analysis::Section fold_blocks(analysis::Section section) {
+  std::vector<analysis::Block> visible_blocks;
   for (analysis::Block& block : section.blocks) {
-    const bool warns = std::holds_alternative<analysis::Warnings>(block);
-    (warns ? shown : section.more).push_back(std::move(block));
+    const bool is_warning = std::holds_alternative<analysis::Warnings>(block);
+    (is_warning ? visible_blocks : section.folded_blocks).push_back(std::move(block));
   }
-  section.blocks = std::move(shown);
+  section.blocks = std::move(visible_blocks);
   return section;
 }
 
@@ -432,11 +434,11 @@ class ResultsWithSection : public analysis::Results {
   analysis::Section section_;
 };
 
-class LevelledResults final : public ResultsWithSection {
+class ResultsWithLevels final : public ResultsWithSection {
  public:
-  LevelledResults(std::unique_ptr<const analysis::Results> results, study::Study study,
-                  StimulusLevels levels)
-      : ResultsWithSection(std::move(results), folded(levels_section(study, levels))),
+  ResultsWithLevels(std::unique_ptr<const analysis::Results> results, study::Study study,
+                    StimulusLevels levels)
+      : ResultsWithSection(std::move(results), fold_blocks(levels_section(study, levels))),
         study_(std::move(study)),
         levels_(std::move(levels)) {}
 
@@ -463,9 +465,9 @@ analysis::Section levels_section(const study::Study& study, const StimulusLevels
   analysis::Section section{"levels", kTitle, {}};
   const std::vector<std::string> warnings = level_warnings(study, levels);
   if (!warnings.empty()) section.blocks.emplace_back(analysis::Warnings{warnings});
-  section.blocks.emplace_back(table_in_all(study, levels));
+  section.blocks.emplace_back(level_table(study, levels));
   const std::vector<std::string> devices = devices_of(levels);
-  if (devices.size() == 1) section.blocks.emplace_back(table_by_bands(study, levels));
+  if (devices.size() == 1) section.blocks.emplace_back(band_table(study, levels));
   std::string nearest;
   for (const std::string& device : devices) {
     const std::string words = nearest_words(study, levels, device);
@@ -473,10 +475,10 @@ analysis::Section levels_section(const study::Study& study, const StimulusLevels
   }
   if (!nearest.empty()) {
     section.blocks.emplace_back(
-        analysis::Cited{"Smallest difference of level between two classes: " + nearest + "."});
+        analysis::CitedText{"Smallest difference of level between two classes: " + nearest + "."});
   }
-  if (std::string words = level_alone_words(study, levels); !words.empty()) {
-    section.blocks.emplace_back(analysis::Cited{std::move(words)});
+  if (std::string words = level_accuracy_words(study, levels); !words.empty()) {
+    section.blocks.emplace_back(analysis::CitedText{std::move(words)});
   }
   return section;
 }
@@ -530,19 +532,19 @@ std::string range_words(const PlaneLevels& levels) {
 std::unique_ptr<const analysis::Results> with_levels(
     std::unique_ptr<const analysis::Results> results, const study::Study& study,
     StimulusLevels levels) {
-  return std::make_unique<LevelledResults>(std::move(results), study, std::move(levels));
+  return std::make_unique<ResultsWithLevels>(std::move(results), study, std::move(levels));
 }
 
 std::unique_ptr<const analysis::Results> with_levels_note(
     std::unique_ptr<const analysis::Results> results) {
   return std::make_unique<ResultsWithSection>(
       std::move(results),
-      analysis::Section{
-          "levels",
-          kTitle,
-          {analysis::Cited{"Not computed for the terminal, because a simulated hand would have to "
-                           "stroke every stimulus on every device; see touchtrial report DB --out "
-                           "DIR, or touchtrial prepare."}}});
+      analysis::Section{"levels",
+                        kTitle,
+                        {analysis::CitedText{
+                            "Not computed for the terminal, because a simulated hand would have to "
+                            "stroke every stimulus on every device; see touchtrial report DB --out "
+                            "DIR, or touchtrial prepare."}}});
 }
 
 }  // namespace touchtrial::planning

@@ -29,20 +29,21 @@ namespace touchtrial::planning {
 [[nodiscard]] std::string all_levels_json(const study::Study& study,
                                           const simulation::StimulusLevels& levels);
 
-/// A one-line warning with its key if stimuli are too weak on the study's device by either curve.
-/// Empty for a study without a device, with a stated level, or that measures thresholds.
+/// A one-line warning that starts with the setting to change, if stimuli are too weak on the
+/// study's device by either curve. Empty for a study that names no device, states a level, or
+/// measures thresholds.
 [[nodiscard]] std::vector<std::string> level_warnings(const study::Study& study,
                                                       const simulation::StimulusLevels& levels);
 
 /// \return the range over all devices and curves, dB: "12 to 31"
 [[nodiscard]] std::string range_words(const simulation::PlaneLevels& levels);
 
-/// Results with a section on levels and a member "levels".
+/// \return the results with an additional section on levels and a JSON member "levels"
 [[nodiscard]] std::unique_ptr<const analysis::Results> with_levels(
     std::unique_ptr<const analysis::Results> results, const study::Study& study,
     simulation::StimulusLevels levels);
 
-/// Results with a section that states how to get the levels, which were not computed.
+/// \return the results with a section that states how to get the levels, which were not computed
 [[nodiscard]] std::unique_ptr<const analysis::Results> with_levels_note(
     std::unique_ptr<const analysis::Results> results);
 

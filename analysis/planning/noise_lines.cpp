@@ -26,7 +26,7 @@ engine::FeltFeatures mean_of(const std::vector<engine::FeltExample>& examples) {
   return mean;
 }
 
-double product(const double* a, const double* b, int count) noexcept {
+double dot_product(const double* a, const double* b, int count) noexcept {
   double sum = 0.0;
   for (int i = 0; i < count; ++i) sum += a[i] * b[i];
   return sum;
@@ -34,8 +34,8 @@ double product(const double* a, const double* b, int count) noexcept {
 
 /// Uses the middle of a cell of width 2^-53, so the uniform number is never 0 or 1.
 double normal_of(std::uint64_t bits) {
-  constexpr int kUnused = 11;
-  const double uniform = (static_cast<double>(bits >> kUnused) + 0.5) * 0x1.0p-53;
+  constexpr int kUnusedBits = 11;
+  const double uniform = (static_cast<double>(bits >> kUnusedBits) + 0.5) * 0x1.0p-53;
   // The upper tail by symmetry: doubles are coarser near 1 than near 0.
   const boost::math::normal standard;
   return uniform < 0.5 ? boost::math::quantile(standard, uniform)
@@ -47,11 +47,11 @@ constexpr int kCells = 2048;
 constexpr double kFarTail = 8.5;
 
 /// The winner at t = -infinity: the prototype with the smallest slope.
-std::size_t first_winner(std::span<const double> at, std::span<const double> slope) noexcept {
+std::size_t first_winner(std::span<const double> supports, std::span<const double> slope) noexcept {
   std::size_t best = 0;
-  for (std::size_t k = 1; k < at.size(); ++k) {
+  for (std::size_t k = 1; k < supports.size(); ++k) {
     const bool sooner = slope[k] < slope[best];
-    if (sooner || (slope[k] == slope[best] && at[k] > at[best])) best = k;
+    if (sooner || (slope[k] == slope[best] && supports[k] > supports[best])) best = k;
   }
   return best;
 }
@@ -62,41 +62,44 @@ struct Crossing {
 };
 
 /// The next prototype that overtakes the winner, and the crossing point.
-Crossing next_winner(std::span<const double> at, std::span<const double> slope,
+Crossing next_winner(std::span<const double> supports, std::span<const double> slope,
                      std::size_t winner) noexcept {
   Crossing next{winner};
-  for (std::size_t k = 0; k < at.size(); ++k) {
+  for (std::size_t k = 0; k < supports.size(); ++k) {
     const double gain = slope[k] - slope[winner];
     if (!(gain > 0.0)) continue;
-    const double t = (at[winner] - at[k]) / gain;
+    const double t = (supports[winner] - supports[k]) / gain;
     if (t < next.t || (t == next.t && slope[k] > slope[next.winner])) next = {k, t};
   }
   return next;
 }
 
-/// Splits a probability among the pictures of all prototypes that equal the winner everywhere.
-void share(std::span<const double> at, std::span<const double> slope, std::span<const int> picture,
-           std::size_t winner, double probability, std::span<double> answers) noexcept {
-  const auto stands_for_its_picture = [&](std::size_t k) {
-    if (at[k] != at[winner] || slope[k] != slope[winner]) return false;
-    for (std::size_t before = 0; before < k; ++before) {
-      const bool equal = at[before] == at[winner] && slope[before] == slope[winner];
-      if (equal && picture[before] == picture[k]) return false;
+/// Splits a probability among the pictures of all prototypes that tie with the winner along the
+/// whole line.
+void split_probability(std::span<const double> supports, std::span<const double> slope,
+                       std::span<const int> picture, std::size_t winner, double probability,
+                       std::span<double> answers) noexcept {
+  const auto is_first_of_picture = [&](std::size_t k) {
+    if (supports[k] != supports[winner] || slope[k] != slope[winner]) return false;
+    for (std::size_t earlier = 0; earlier < k; ++earlier) {
+      const bool equal = supports[earlier] == supports[winner] && slope[earlier] == slope[winner];
+      if (equal && picture[earlier] == picture[k]) return false;
     }
     return true;
   };
-  int equals = 0;
-  for (std::size_t k = 0; k < at.size(); ++k) equals += stands_for_its_picture(k) ? 1 : 0;
-  for (std::size_t k = 0; k < at.size(); ++k) {
-    if (stands_for_its_picture(k)) answers[picture[k]] += probability / equals;
+  int ties = 0;
+  for (std::size_t k = 0; k < supports.size(); ++k) ties += is_first_of_picture(k) ? 1 : 0;
+  for (std::size_t k = 0; k < supports.size(); ++k) {
+    if (is_first_of_picture(k)) answers[picture[k]] += probability / ties;
   }
 }
 
-/// Whether another prototype equals the winner everywhere: stimuli that feel the same.
-bool has_equal(std::span<const double> at, std::span<const double> slope,
-               std::size_t winner) noexcept {
-  for (std::size_t k = 0; k < at.size(); ++k) {
-    if (k != winner && slope[k] == slope[winner] && at[k] == at[winner]) return true;
+/// Whether another prototype ties with the winner along the whole line, as stimuli do that feel the
+/// same.
+bool has_tie(std::span<const double> supports, std::span<const double> slope,
+             std::size_t winner) noexcept {
+  for (std::size_t k = 0; k < supports.size(); ++k) {
+    if (k != winner && slope[k] == slope[winner] && supports[k] == supports[winner]) return true;
   }
   return false;
 }
@@ -110,16 +113,17 @@ int noise_dimensions(int prototypes) noexcept {
 LinearSupports::LinearSupports(const simulation::FeltKnowledge& knowledge, engine::FeltNoise noise,
                                const std::optional<simulation::FeltFloor>& floor)
     : floor_(floor) {
-  const std::vector<engine::FeltExample> examples = simulation::examples_above(knowledge, floor);
+  const std::vector<engine::FeltExample> examples =
+      simulation::perceived_examples(knowledge, floor);
   const engine::FeltClassifier classifier(examples, noise);
   middle_ = mean_of(examples);
   constant_ = classifier.log_likelihoods(middle_);
   dimensions_ = noise_dimensions(static_cast<int>(constant_.size()));
   gradient_.resize(constant_.size() * engine::kFeltFeatures);
   for (int feature = 0; feature < engine::kFeltFeatures; ++feature) {
-    engine::FeltFeatures moved = middle_;
-    moved[feature] += 1.0;
-    const std::vector<double> logs = classifier.log_likelihoods(moved);
+    engine::FeltFeatures shifted = middle_;
+    shifted[feature] += 1.0;
+    const std::vector<double> logs = classifier.log_likelihoods(shifted);
     for (std::size_t k = 0; k < logs.size(); ++k) {
       gradient_[k * engine::kFeltFeatures + feature] =
           (logs[k] - constant_[k]) - (logs[0] - constant_[0]);
@@ -130,54 +134,57 @@ LinearSupports::LinearSupports(const simulation::FeltKnowledge& knowledge, engin
   factorise_noise(noise);
 }
 
-/// The Cholesky factor of the noise's covariance: the products of the gradients, and of their sums
-/// for what is common to all features. A prototype that depends linearly on the previous ones
-/// (equal stimuli, or more stimuli than features) gets no column.
+/// Computes the Cholesky factor of the noise's covariance. Independent noise contributes the
+/// products of the gradients; noise common to all features contributes the products of their sums.
+/// A prototype that depends linearly on the previous ones (equal stimuli, or more stimuli than
+/// features) gets no column.
 void LinearSupports::factorise_noise(engine::FeltNoise noise) {
   const auto rows = static_cast<int>(constant_.size());
   std::vector<double> sums;
   for (int k = 0; k < rows; ++k) {
-    const double* own = &gradient_[static_cast<std::size_t>(k) * engine::kFeltFeatures];
-    sums.push_back(std::accumulate(own, own + engine::kFeltFeatures, 0.0));
+    const double* row = &gradient_[static_cast<std::size_t>(k) * engine::kFeltFeatures];
+    sums.push_back(std::accumulate(row, row + engine::kFeltFeatures, 0.0));
   }
   const auto covariance_of = [&](int a, int b) {
     const double* first = &gradient_[static_cast<std::size_t>(a) * engine::kFeltFeatures];
     const double* second = &gradient_[static_cast<std::size_t>(b) * engine::kFeltFeatures];
-    return noise.own * noise.own * product(first, second, engine::kFeltFeatures) +
+    return noise.independent * noise.independent *
+               dot_product(first, second, engine::kFeltFeatures) +
            noise.common * noise.common * (sums[a] * sums[b]);
   };
   factor_.assign(static_cast<std::size_t>(rows) * dimensions_, 0.0);
   int column = 0;
   for (int pivot = 1; pivot < rows && column < dimensions_; ++pivot) {
-    const double* own_row = &factor_[static_cast<std::size_t>(pivot) * dimensions_];
+    const double* pivot_row = &factor_[static_cast<std::size_t>(pivot) * dimensions_];
     const double variance = covariance_of(pivot, pivot);
-    const double left = variance - product(own_row, own_row, column);
-    constexpr double kNothing = 1e-12;
-    if (!(left > kNothing * variance)) continue;
-    const double root = std::sqrt(left);
+    const double residual = variance - dot_product(pivot_row, pivot_row, column);
+    constexpr double kMinResidualShare = 1e-12;
+    if (!(residual > kMinResidualShare * variance)) continue;
+    const double root = std::sqrt(residual);
     for (int k = pivot; k < rows; ++k) {
       double* row = &factor_[static_cast<std::size_t>(k) * dimensions_];
-      row[column] = (covariance_of(pivot, k) - product(own_row, row, column)) / root;
+      row[column] = (covariance_of(pivot, k) - dot_product(pivot_row, row, column)) / root;
     }
     ++column;
   }
 }
 
-void LinearSupports::at(engine::FeltFeatures felt, std::span<double> supports) const noexcept {
+void LinearSupports::compute_supports(engine::FeltFeatures felt,
+                                      std::span<double> supports) const noexcept {
   if (floor_) floor_->apply_to(felt);
-  engine::FeltFeatures apart{};
-  for (int i = 0; i < engine::kFeltFeatures; ++i) apart[i] = felt[i] - middle_[i];
+  engine::FeltFeatures difference{};
+  for (int i = 0; i < engine::kFeltFeatures; ++i) difference[i] = felt[i] - middle_[i];
   for (std::size_t k = 0; k < supports.size(); ++k) {
-    supports[k] = constant_[k] + product(&gradient_[k * engine::kFeltFeatures], apart.data(),
-                                         engine::kFeltFeatures);
+    supports[k] = constant_[k] + dot_product(&gradient_[k * engine::kFeltFeatures],
+                                             difference.data(), engine::kFeltFeatures);
   }
 }
 
-void LinearSupports::noise(std::span<const double> normals,
-                           std::span<double> supports) const noexcept {
+void LinearSupports::compute_noise(std::span<const double> normals,
+                                   std::span<double> supports) const noexcept {
   for (std::size_t k = 0; k < supports.size(); ++k) {
-    supports[k] =
-        product(&factor_[k * static_cast<std::size_t>(dimensions_)], normals.data(), dimensions_);
+    supports[k] = dot_product(&factor_[k * static_cast<std::size_t>(dimensions_)], normals.data(),
+                              dimensions_);
   }
 }
 
@@ -196,16 +203,16 @@ NoisePoints::NoisePoints(int dimensions, std::size_t count, std::uint64_t seed, 
 std::vector<double> normal_groups(int groups) {
   const boost::math::normal standard;
   std::vector<double> means;
-  double from = 0.0;  // density at the group's lower end
+  double lower_density = 0.0;  // density at the group's lower end
   double squares = 0.0;
   for (int i = 1; i <= groups; ++i) {
-    const double to =
+    const double upper_density =
         i < groups ? boost::math::pdf(
                          standard, boost::math::quantile(standard, static_cast<double>(i) / groups))
                    : 0.0;
-    means.push_back(groups * (from - to));
+    means.push_back(groups * (lower_density - upper_density));
     squares += means.back() * means.back();
-    from = to;
+    lower_density = upper_density;
   }
   const double scale = squares > 0.0 ? std::sqrt(groups / squares) : 0.0;
   for (double& mean : means) mean *= scale;
@@ -214,13 +221,13 @@ std::vector<double> normal_groups(int groups) {
 
 RadialDistribution::RadialDistribution(int dimensions) {
   if (dimensions < 1) throw std::invalid_argument("RadialDistribution: dimensions start at 1");
-  reach_ = std::sqrt(static_cast<double>(dimensions)) + kFarTail;
-  step_ = reach_ / kCells;
+  max_length_ = std::sqrt(static_cast<double>(dimensions)) + kFarTail;
+  step_ = max_length_ / kCells;
   const boost::math::chi_squared squared(dimensions);
   for (int i = 0; i <= kCells; ++i) {
     const double r = i * step_;
-    beyond_.push_back(boost::math::cdf(boost::math::complement(squared, r * r)));
-    // The density of r is 2 r times that of r^2, which is infinite at 0 for d = 1.
+    tail_.push_back(boost::math::cdf(boost::math::complement(squared, r * r)));
+    // The density of r is 2 r times the density of r^2, which is infinite at 0 for d = 1.
     const double near = r > 0.0 ? r : 1e-9 * step_;
     density_.push_back(2.0 * near * boost::math::pdf(squared, near * near) * step_);
   }
@@ -228,45 +235,45 @@ RadialDistribution::RadialDistribution(int dimensions) {
 
 RadialDistribution::Value RadialDistribution::at(double t) const noexcept {
   const double r = std::abs(t);
-  if (!(r < reach_)) return {t > 0.0 ? 1.0 : 0.0, 0.0};
+  if (!(r < max_length_)) return {t > 0.0 ? 1.0 : 0.0, 0.0};
   const int cell = static_cast<int>(r / step_);
   const double x = r / step_ - cell;
-  const double from = beyond_[cell];
-  const double to = beyond_[cell + 1];
-  const double slope_from = -density_[cell];
-  const double slope_to = -density_[cell + 1];
+  const double left_tail = tail_[cell];
+  const double right_tail = tail_[cell + 1];
+  const double left_slope = -density_[cell];
+  const double right_slope = -density_[cell + 1];
   // Cubic Hermite, and its derivative.
-  const double c2 = 3.0 * (to - from) - 2.0 * slope_from - slope_to;
-  const double c3 = 2.0 * (from - to) + slope_from + slope_to;
-  const double more = from + x * (slope_from + x * (c2 + x * c3));
-  const double density = -(slope_from + x * (2.0 * c2 + 3.0 * x * c3)) / step_;
-  return {t > 0.0 ? 1.0 - 0.5 * more : 0.5 * more, 0.5 * density};
+  const double c2 = 3.0 * (right_tail - left_tail) - 2.0 * left_slope - right_slope;
+  const double c3 = 2.0 * (left_tail - right_tail) + left_slope + right_slope;
+  const double tail = left_tail + x * (left_slope + x * (c2 + x * c3));
+  const double density = -(left_slope + x * (2.0 * c2 + 3.0 * x * c3)) / step_;
+  return {t > 0.0 ? 1.0 - 0.5 * tail : 0.5 * tail, 0.5 * density};
 }
 
-void add_winners(std::span<const double> at, std::span<const double> slope,
+void add_winners(std::span<const double> supports, std::span<const double> slope,
                  std::span<const int> picture, const RadialDistribution& noise, double weight,
                  std::span<double> answers, std::span<double> slopes) noexcept {
-  std::size_t winner = first_winner(at, slope);
+  std::size_t winner = first_winner(supports, slope);
   double below = 0.0;
   for (;;) {
-    const Crossing next = next_winner(at, slope, winner);
+    const Crossing next = next_winner(supports, slope, winner);
     const RadialDistribution::Value value = noise.at(next.t);
     const double probability = weight * (value.below - below);
-    if (has_equal(at, slope, winner)) {
-      share(at, slope, picture, winner, probability, answers);
+    if (has_tie(supports, slope, winner)) {
+      split_probability(supports, slope, picture, winner, probability, answers);
     } else {
       answers[picture[winner]] += probability;
     }
     if (next.winner == winner) return;
     if (!slopes.empty() && value.density > 0.0) {
       const double rate = weight * value.density / (slope[next.winner] - slope[winner]);
-      const auto from = static_cast<std::size_t>(picture[winner]);
-      const auto to = static_cast<std::size_t>(picture[next.winner]);
+      const auto old_picture = static_cast<std::size_t>(picture[winner]);
+      const auto new_picture = static_cast<std::size_t>(picture[next.winner]);
       const std::size_t pictures = answers.size();
-      slopes[from * pictures + from] += rate;
-      slopes[from * pictures + to] -= rate;
-      slopes[to * pictures + from] -= rate;
-      slopes[to * pictures + to] += rate;
+      slopes[old_picture * pictures + old_picture] += rate;
+      slopes[old_picture * pictures + new_picture] -= rate;
+      slopes[new_picture * pictures + old_picture] -= rate;
+      slopes[new_picture * pictures + new_picture] += rate;
     }
     below = value.below;
     winner = next.winner;

@@ -24,23 +24,23 @@ namespace touchtrial::planning {
 /// Immutable, thread-safe.
 class LinearSupports {
  public:
-  /// Evaluates a FeltClassifier at the examples' mean and one step along each feature. Cost: some
-  /// 30 us.
-  /// \param noise  of the person's features; its independent part must be > 0
-  /// \param floor  the person's, if there is one
+  /// Evaluates a FeltClassifier at the examples' mean and one step along each feature. Cost:
+  /// about 30 us.
+  /// \param noise  noise of the person's features; its independent part must be > 0
+  /// \param floor  the person's sensory floor, if there is one
   LinearSupports(const simulation::FeltKnowledge& knowledge, engine::FeltNoise noise,
                  const std::optional<simulation::FeltFloor>& floor = {});
 
-  /// The supports without noise.
-  /// \param felt  before the person's floor
+  /// Computes the supports without noise.
+  /// \param felt  features before the person's floor is applied
   /// \param supports  receives one number per prototype
-  void at(engine::FeltFeatures felt, std::span<double> supports) const noexcept;
+  void compute_supports(engine::FeltFeatures felt, std::span<double> supports) const noexcept;
 
-  /// The effect of all features' noise on the supports: a linear function of independent standard
-  /// normals.
+  /// Computes the effect of the features' noise on the supports, a linear function of independent
+  /// standard normals.
   /// \param normals  noise_dimensions(prototypes) numbers
   /// \param supports  receives one number per prototype
-  void noise(std::span<const double> normals, std::span<double> supports) const noexcept;
+  void compute_noise(std::span<const double> normals, std::span<double> supports) const noexcept;
 
  private:
   void factorise_noise(engine::FeltNoise noise);
@@ -90,22 +90,22 @@ class RadialDistribution {
   [[nodiscard]] Value at(double t) const noexcept;
 
  private:
-  double reach_;  ///< longer lengths are ignored
+  double max_length_;  ///< longer lengths are ignored
   double step_;
-  std::vector<double> beyond_;   ///< P(absolute length > i steps)
+  std::vector<double> tail_;     ///< P(absolute length > i steps)
   std::vector<double> density_;  ///< its density per step
 };
 
 /// Adds to each picture's answer the probability that the picture has the largest support. Along
-/// the line, prototype k has the support at[k] + t * slope[k], where t is random, and a picture has
-/// the largest support of its prototypes. Equal supports share the probability.
+/// the line, prototype k has the support supports[k] + t * slope[k], where t is random. A picture's
+/// support is the largest among its prototypes. Equal supports share the probability.
 /// \param picture  index of each prototype's picture
 /// \param noise  distribution of t
 /// \param weight  of this line
 /// \param answers  by picture
-/// \param slopes  empty, or [answer x pictures + picture]: receives the derivatives by an amount
-/// that is added to a picture's support
-void add_winners(std::span<const double> at, std::span<const double> slope,
+/// \param slopes  empty, or [answer x pictures + picture]: receives the derivatives with respect to
+///   a constant added to a picture's support
+void add_winners(std::span<const double> supports, std::span<const double> slope,
                  std::span<const int> picture, const RadialDistribution& noise, double weight,
                  std::span<double> answers, std::span<double> slopes) noexcept;
 

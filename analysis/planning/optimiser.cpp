@@ -14,7 +14,7 @@ namespace {
 
 using Solver = std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)>;
 
-/// State that passes through the C library, which sees numbers divided by their scales.
+/// State passed through the C library, which works with numbers divided by their scales.
 struct Search {
   const SmoothFunction& function;
   std::vector<double> scales;
@@ -23,22 +23,22 @@ struct Search {
   std::exception_ptr failure{};
 };
 
-double evaluated(Search& search, std::span<const double> scaled, std::span<double> slopes) {
-  std::vector<double> at(scaled.begin(), scaled.end());
-  for (std::size_t i = 0; i < at.size(); ++i) at[i] *= search.scales[i];
-  const double value = search.function(at, slopes);
+double evaluate_scaled(Search& search, std::span<const double> scaled, std::span<double> slopes) {
+  std::vector<double> point(scaled.begin(), scaled.end());
+  for (std::size_t i = 0; i < point.size(); ++i) point[i] *= search.scales[i];
+  const double value = search.function(point, slopes);
   for (std::size_t i = 0; i < slopes.size(); ++i) slopes[i] *= search.scales[i];
   if (value > search.best.value) {
     search.best.value = value;
-    search.best.at = std::move(at);
+    search.best.point = std::move(point);
   }
   return value;
 }
 
-double evaluate(unsigned count, const double* at, double* slopes, void* data) noexcept {
+double evaluate(unsigned count, const double* point, double* slopes, void* data) noexcept {
   Search& search = *static_cast<Search*>(data);
   try {
-    return evaluated(search, {at, count}, {slopes, slopes != nullptr ? count : 0});
+    return evaluate_scaled(search, {point, count}, {slopes, slopes != nullptr ? count : 0});
   } catch (...) {
     search.failure = std::current_exception();
     nlopt_force_stop(search.solver);
@@ -46,7 +46,7 @@ double evaluate(unsigned count, const double* at, double* slopes, void* data) no
   }
 }
 
-std::vector<double> divided(std::vector<double> numbers, const std::vector<double>& scales) {
+std::vector<double> quotients(std::vector<double> numbers, const std::vector<double>& scales) {
   for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] /= scales[i];
   return numbers;
 }
@@ -67,12 +67,12 @@ Optimum maximise(const SmoothFunction& function, std::vector<double> start, cons
                 solver.get(),
                 {start, -std::numeric_limits<double>::infinity()},
                 {}};
-  nlopt_set_lower_bounds(solver.get(), divided(bounds.lower, search.scales).data());
-  nlopt_set_upper_bounds(solver.get(), divided(bounds.upper, search.scales).data());
+  nlopt_set_lower_bounds(solver.get(), quotients(bounds.lower, search.scales).data());
+  nlopt_set_upper_bounds(solver.get(), quotients(bounds.upper, search.scales).data());
   nlopt_set_max_objective(solver.get(), &evaluate, &search);
   nlopt_set_ftol_rel(solver.get(), options.tolerance);
   nlopt_set_maxeval(solver.get(), options.max_evaluations);
-  std::vector<double> scaled = divided(start, search.scales);
+  std::vector<double> scaled = quotients(start, search.scales);
   double value = 0.0;
   // The best point is the answer, whether the search converged or not.
   static_cast<void>(nlopt_optimize(solver.get(), scaled.data(), &value));

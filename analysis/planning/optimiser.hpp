@@ -8,7 +8,8 @@
 namespace touchtrial::planning {
 
 /// \param slopes  empty, or receives the derivatives
-using SmoothFunction = std::function<double(std::span<const double> at, std::span<double> slopes)>;
+using SmoothFunction =
+    std::function<double(std::span<const double> point, std::span<double> slopes)>;
 
 struct Bounds {
   std::vector<double> lower;
@@ -16,7 +17,7 @@ struct Bounds {
 };
 
 struct Optimum {
-  std::vector<double> at;
+  std::vector<double> point;
   double value = 0.0;
 };
 

@@ -27,7 +27,7 @@ constexpr double kHalfChiSquare = 1.920729;
 
 using Curve = boost::math::interpolators::makima<std::vector<double>>;
 
-/// One cell of a participant's counts that is not 0.
+/// One nonzero cell of a participant's counts.
 struct AnswerCount {
   std::size_t cell = 0;
   double count = 0.0;
@@ -37,7 +37,7 @@ struct Person {
   std::vector<AnswerCount> answers;
 };
 
-std::vector<Person> chosen(std::span<const CountedPerson> people) {
+std::vector<Person> selected_people(std::span<const CountedPerson> people) {
   const std::size_t count = std::min(people.size(), kMaxPeopleOfSpread);
   std::vector<Person> persons;
   for (std::size_t i = 0; i < count; ++i) {
@@ -61,24 +61,26 @@ struct Point {
 class SpreadLikelihood {
  public:
   SpreadLikelihood(const NoiseAnswers& answers, std::span<const CountedPerson> people)
-      : answers_(answers), people_(chosen(people)), groups_(normal_groups(kGroupsOfPeople)) {
+      : answers_(answers),
+        people_(selected_people(people)),
+        groups_(normal_groups(kGroupsOfPeople)) {
     for (std::size_t i = 0; i < answers.answers.size(); ++i) {
-      places_.push_back(answers.min_log_noise + static_cast<double>(i) * answers.step);
+      log_noises_.push_back(answers.min_log_noise + static_cast<double>(i) * answers.step);
     }
   }
 
-  [[nodiscard]] double min_log_noise() const { return places_.front(); }
-  [[nodiscard]] double max_log_noise() const { return places_.back(); }
+  [[nodiscard]] double min_log_noise() const { return log_noises_.front(); }
+  [[nodiscard]] double max_log_noise() const { return log_noises_.back(); }
 
   /// Each person's log likelihood as a function of ln noise.
   [[nodiscard]] std::vector<Curve> curves(double lapse) const {
     std::vector<Curve> all;
     for (const Person& person : people_) {
       std::vector<double> values;
-      for (const Cells& at_noise : answers_.answers) {
-        values.push_back(log_likelihood(person, at_noise[person.layout], lapse));
+      for (const Cells& cells : answers_.answers) {
+        values.push_back(log_likelihood(person, cells[person.layout], lapse));
       }
-      all.emplace_back(std::vector<double>(places_), std::move(values));
+      all.emplace_back(std::vector<double>(log_noises_), std::move(values));
     }
     return all;
   }
@@ -86,7 +88,7 @@ class SpreadLikelihood {
   [[nodiscard]] double value(const std::vector<Curve>& curves, double log_noise,
                              double spread) const {
     double sum = 0.0;
-    for (const Curve& curve : curves) sum += of_person(curve, log_noise, spread);
+    for (const Curve& curve : curves) sum += person_log_likelihood(curve, log_noise, spread);
     return sum;
   }
 
@@ -102,7 +104,8 @@ class SpreadLikelihood {
   }
 
   /// The logarithm of the mean likelihood over the groups of people.
-  [[nodiscard]] double of_person(const Curve& curve, double log_noise, double spread) const {
+  [[nodiscard]] double person_log_likelihood(const Curve& curve, double log_noise,
+                                             double spread) const {
     if (spread == 0.0) return curve(log_noise);
     std::array<double, kGroupsOfPeople> logs{};
     double largest = -std::numeric_limits<double>::infinity();
@@ -119,10 +122,10 @@ class SpreadLikelihood {
   const NoiseAnswers& answers_;
   std::vector<Person> people_;
   std::vector<double> groups_;
-  std::vector<double> places_;
+  std::vector<double> log_noises_;
 };
 
-/// The numbers that may change.
+/// The parameters to estimate.
 struct Free {
   bool noise = true;
   bool lapse = true;
@@ -133,37 +136,39 @@ struct Free {
 constexpr double kSlopeStep = 1e-4;
 
 /// The derivative by one number, from differences within its bounds.
-double slope(const std::function<double(double)>& value, double at, double lower, double upper) {
+double slope(const std::function<double(double)>& value, double point, double lower, double upper) {
   if (lower == upper) return 0.0;
-  const double low = std::max(lower, at - kSlopeStep);
-  const double high = std::min(upper, at + kSlopeStep);
+  const double low = std::max(lower, point - kSlopeStep);
+  const double high = std::min(upper, point + kSlopeStep);
   return (value(high) - value(low)) / (high - low);
 }
 
-Point maximised(const SpreadLikelihood& likelihood, const Point& start, const Free& free) {
+Point maximise_likelihood(const SpreadLikelihood& likelihood, const Point& start,
+                          const Free& free) {
   const auto bound = [](bool is_free, double fixed, double end) { return is_free ? end : fixed; };
   const Bounds bounds{{bound(free.noise, start.log_noise, likelihood.min_log_noise()),
                        bound(free.lapse, start.lapse, 0.0), bound(free.spread, start.spread, 0.0)},
                       {bound(free.noise, start.log_noise, likelihood.max_log_noise()),
                        bound(free.lapse, start.lapse, kMaxLapse),
                        bound(free.spread, start.spread, kSpreads.back())}};
-  const SmoothFunction function = [&](std::span<const double> at, std::span<double> slopes) {
-    const std::vector<Curve> curves = likelihood.curves(at[1]);
+  const SmoothFunction function = [&](std::span<const double> point, std::span<double> slopes) {
+    const std::vector<Curve> curves = likelihood.curves(point[1]);
     if (!slopes.empty()) {
-      const auto with = [&](std::size_t i, auto value) {
-        slopes[i] = slope(value, at[i], bounds.lower[i], bounds.upper[i]);
+      const auto set_slope = [&](std::size_t i, auto value) {
+        slopes[i] = slope(value, point[i], bounds.lower[i], bounds.upper[i]);
       };
-      with(0, [&](double noise) { return likelihood.value(curves, noise, at[2]); });
-      with(1,
-           [&](double lapse) { return likelihood.value(likelihood.curves(lapse), at[0], at[2]); });
-      with(2, [&](double spread) { return likelihood.value(curves, at[0], spread); });
+      set_slope(0, [&](double noise) { return likelihood.value(curves, noise, point[2]); });
+      set_slope(1, [&](double lapse) {
+        return likelihood.value(likelihood.curves(lapse), point[0], point[2]);
+      });
+      set_slope(2, [&](double spread) { return likelihood.value(curves, point[0], spread); });
     }
-    return likelihood.value(curves, at[0], at[2]);
+    return likelihood.value(curves, point[0], point[2]);
   };
   const Optimum best =
       maximise(function, {start.log_noise, start.lapse, start.spread}, bounds,
                {.tolerance = 1e-7, .max_evaluations = 40, .scales = {0.2, 0.05, 0.2}});
-  return {best.at[0], best.at[1], best.at[2], best.value};
+  return {best.point[0], best.point[1], best.point[2], best.value};
 }
 
 /// The best points for each of a list of fixed spreads. Each search also starts from its
@@ -174,8 +179,8 @@ std::vector<Point> profile(const SpreadLikelihood& likelihood, const SpreadStart
   std::vector<Point> points;
   const auto improve = [&](std::size_t i, Point from) {
     from.spread = kSpreads[i];
-    const Point found = maximised(likelihood, from, free);
-    if (found.value > points[i].value) points[i] = found;
+    const Point maximum = maximise_likelihood(likelihood, from, free);
+    if (maximum.value > points[i].value) points[i] = maximum;
   };
   Point from{std::clamp(start.log_noise, likelihood.min_log_noise(), likelihood.max_log_noise()),
              start.lapse};
@@ -187,7 +192,7 @@ std::vector<Point> profile(const SpreadLikelihood& likelihood, const SpreadStart
   return points;
 }
 
-/// The place between two points of the profile at which it has this value.
+/// The spread between two points of the profile at which the profile has this value.
 double crossing(const Point& below, const Point& above, double value) {
   const double share = (value - below.value) / (above.value - below.value);
   return below.spread + share * (above.spread - below.spread);
@@ -195,17 +200,17 @@ double crossing(const Point& below, const Point& above, double value) {
 
 /// The spreads at which the profile lies less than 1.92 below its maximum.
 OpenInterval interval_of(const std::vector<Point>& points, const Point& best) {
-  const double enough = best.value - kHalfChiSquare;
+  const double limit = best.value - kHalfChiSquare;
   OpenInterval interval{0.0, std::nullopt};
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    const Point& here = points[i];
+    const Point& current = points[i];
     const Point& next = points[i + 1];
     // The best point lies between two of the profile.
-    if (here.value < enough && here.spread < best.spread) {
-      interval.lower = crossing(here, next.value < enough ? best : next, enough);
+    if (current.value < limit && current.spread < best.spread) {
+      interval.lower = crossing(current, next.value < limit ? best : next, limit);
     }
-    if (next.value < enough && next.spread > best.spread && !interval.upper) {
-      interval.upper = crossing(here.value < enough ? best : here, next, enough);
+    if (next.value < limit && next.spread > best.spread && !interval.upper) {
+      interval.upper = crossing(current.value < limit ? best : current, next, limit);
     }
   }
   return interval;
@@ -213,11 +218,11 @@ OpenInterval interval_of(const std::vector<Point>& points, const Point& best) {
 
 /// The p of a spread by the likelihood ratio. A spread of 0 lies on the boundary, where the ratio
 /// is 0 half of the time.
-double p_of(double lost, bool at_the_end) {
-  if (lost <= 0.0) return 1.0;
+double p_of(double loss, bool is_boundary) {
+  if (loss <= 0.0) return 1.0;
   const boost::math::chi_squared_distribution<> chi_squared(1.0);
-  const double p = boost::math::cdf(boost::math::complement(chi_squared, 2.0 * lost));
-  return at_the_end ? 0.5 * p : p;
+  const double p = boost::math::cdf(boost::math::complement(chi_squared, 2.0 * loss));
+  return is_boundary ? 0.5 * p : p;
 }
 
 void check(const NoiseAnswers& answers, const SpreadStart& start) {
@@ -239,24 +244,25 @@ std::optional<PeopleSpread> people_spread(const NoiseAnswers& answers,
   const SpreadLikelihood likelihood(answers, people);
   Free free{start.noise_is_free, start.lapse_is_free, false};
   const std::vector<Point> points = profile(likelihood, start, free);
-  Point given = points.front();
+  Point assumed = points.front();
   if (start.spread > 0.0) {
     const auto nearest = std::ranges::min_element(
         points, {}, [&](const Point& one) { return std::abs(one.spread - start.spread); });
-    given = *nearest;
-    given.spread = start.spread;
-    given = maximised(likelihood, given, free);
+    assumed = *nearest;
+    assumed.spread = start.spread;
+    assumed = maximise_likelihood(likelihood, assumed, free);
   }
   free.spread = true;
-  Point best = maximised(likelihood, *std::ranges::max_element(points, {}, &Point::value), free);
+  Point best =
+      maximise_likelihood(likelihood, *std::ranges::max_element(points, {}, &Point::value), free);
   if (best.value < points.front().value) best = points.front();
-  if (best.value < given.value) best = given;
+  if (best.value < assumed.value) best = assumed;
   return PeopleSpread{best.spread,
                       interval_of(points, best),
                       best.log_noise,
                       best.lapse,
                       p_of(best.value - points.front().value, true),
-                      p_of(best.value - given.value, start.spread == 0.0)};
+                      p_of(best.value - assumed.value, start.spread == 0.0)};
 }
 
 }  // namespace touchtrial::planning

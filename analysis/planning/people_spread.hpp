@@ -25,7 +25,7 @@ struct NoiseAnswers {
   std::vector<Cells> answers;  ///< [amount][layout][stimulus x classes + answer], 4 or more
 };
 
-/// The start of the search, and the numbers that may change besides the spread.
+/// The start of the search, and the parameters besides the spread that may be estimated.
 struct SpreadStart {
   double log_noise = 0.0;
   double lapse = 0.0;
@@ -43,7 +43,7 @@ struct PeopleSpread {
   double assumed_p = 1.0;  ///< of SpreadStart::spread
 };
 
-/// The maximum number of people whose answers are used; an even selection of larger samples.
+/// The maximum number of people whose answers are used; larger samples are thinned evenly.
 inline constexpr std::size_t kMaxPeopleOfSpread = 400;
 
 /// Maximises the likelihood of all participants' answers. Each participant has one noise in all

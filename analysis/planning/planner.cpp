@@ -11,14 +11,14 @@
 namespace touchtrial::planning {
 namespace {
 
-std::map<std::string_view, const Planner*>& known_planners() {
+std::map<std::string_view, const Planner*>& registered_planners() {
   static std::map<std::string_view, const Planner*> all;
   return all;
 }
 
 /// Names a protocol with tracks and its shipped study: "the protocol NAME, such as FILE".
 std::string words_of_tracks() {
-  for (const auto& [protocol, planner] : known_planners()) {
+  for (const auto& [protocol, planner] : registered_planners()) {
     if (planner->study_with_tracks().empty()) continue;
     return fmt::format("the protocol {}, such as {}", protocol, planner->study_with_tracks());
   }
@@ -44,21 +44,21 @@ std::vector<std::pair<std::string, double>> Planner::pilot_thresholds(
 }
 
 void add_planner(std::string_view protocol, const Planner& planner) {
-  known_planners()[protocol] = &planner;
+  registered_planners()[protocol] = &planner;
 }
 
 const Planner& planner_of(const study::Study& study, const std::string& what) {
-  const auto found = known_planners().find(study.protocol->name);
-  if (found != known_planners().end()) return *found->second;
+  const auto found = registered_planners().find(study.protocol->name);
+  if (found != registered_planners().end()) return *found->second;
   throw StudyError(one_line("study " + study.name + ": the protocol " + study.protocol_name() +
                             " has no " + what + "; give a study of another"));
 }
 
 std::vector<std::string_view> protocols_with(std::string_view option) {
   std::vector<std::string_view> found;
-  for (const auto& [protocol, planner] : known_planners()) {
-    const auto own = planner->options();
-    if (std::ranges::find(own, option) != own.end()) found.push_back(protocol);
+  for (const auto& [protocol, planner] : registered_planners()) {
+    const auto options = planner->options();
+    if (std::ranges::find(options, option) != options.end()) found.push_back(protocol);
   }
   return found;
 }

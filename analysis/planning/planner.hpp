@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/outcomes/outcomes.hpp"
+#include "analysis/planning/power_curve.hpp"
 #include "analysis/planning/power_plan.hpp"
 #include "protocols/simulation/subject_model.hpp"
 #include "study/prepare.hpp"
@@ -23,9 +24,9 @@ struct PowerOptions {
   int jobs = 1;    ///< threads; results do not depend on them
   bool json = false;
 
-  std::vector<std::string> methods{};  ///< labels of two; empty: the study's
+  std::vector<std::string> methods{};  ///< labels of two methods; empty: the study's
   std::optional<double> margin{};
-  std::optional<double> mean{};  ///< of people, in place of simulated hands
+  std::optional<double> mean{};  ///< mean accuracy of people, instead of simulated hands
   double sd_between = 0.0;
   std::optional<double> accuracy{};
   std::string trials{};      ///< of a track, as typed; empty: the study's
@@ -44,18 +45,23 @@ struct PowerTools {
   std::function<study::Progress(const std::string&)> progress;
 };
 
+/// A planner's result.
+struct PowerResult {
+  std::string text;  ///< output of `power`
+  PowerCurve curve;  ///< without series if the options state no goal that studies reach or miss
+};
+
 /// The part of a protocol that plans studies. Stateless and thread-safe.
 class Planner {
  public:
   virtual ~Planner() = default;
 
-  /// Options of `power` that it accepts in addition to the common ones, for example "--methods".
+  /// Options of `power` that it accepts in addition to the common options, for example "--methods".
   [[nodiscard]] virtual std::span<const std::string_view> options() const = 0;
   /// Simulates a study many times.
-  /// \return what `power` prints
   /// \throws UsageError if an option is impossible for the study
   /// \throws StudyError if power is undefined for the study
-  [[nodiscard]] virtual std::string power(const study::Study& study, const PowerOptions& options,
+  [[nodiscard]] virtual PowerResult power(const study::Study& study, const PowerOptions& options,
                                           const PowerTools& tools) const = 0;
 
   /// A shipped study with tracks for `procedure`; empty: the protocol has no tracks.
@@ -68,8 +74,8 @@ class Planner {
   [[nodiscard]] virtual std::string procedure(const study::Study& study, int track,
                                               const std::vector<bool>& answers) const;
 
-  /// Mean measured thresholds of detection along gain, dB, of each class's label, at the share of
-  /// right answers that levels count from.
+  /// The mean measured detection threshold along gain for each class label, dB, at the share of
+  /// right answers that defines a level of 0 dB.
   /// \param outcomes  unblinded
   /// \param place  prefix of error messages
   /// \throws StudyError if the study measured no such thresholds, or too few

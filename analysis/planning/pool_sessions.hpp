@@ -1,4 +1,4 @@
-/// \file Whole sessions of one simulated participant in virtual time, without storing anything.
+/// \file Runs complete sessions of one simulated participant in virtual time, without storing them.
 /// Planning draws samples from pools of such participants.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace touchtrial::planning {
 
-/// Settings shared by the sessions of a pool; everything must outlive them.
+/// Settings shared by the sessions of a pool; the referenced objects must outlive the sessions.
 struct PoolSetting {
   const study::StudyKey& key;
   const session::StimulusSource& source;
@@ -26,11 +26,11 @@ struct PoolSetting {
 using AnswerObserver =
     std::function<void(const study::Order& order, const study::Trial& shown, const Answer& answer)>;
 
-/// Runs the participant's sessions at all visits, identical to those of `simulate` with the
-/// population's seed. Thread-safe if `note` is.
+/// Runs the participant's sessions at all visits, identical to the sessions of `simulate` with the
+/// population's seed. Thread-safe if `on_answer` is.
 /// \param number  of the participant, from 1
 /// \return whether all sessions reached their end; stops after the first that did not
 [[nodiscard]] bool run_pool_sessions(const PoolSetting& setting, int number,
-                                     const AnswerObserver& note);
+                                     const AnswerObserver& on_answer);
 
 }  // namespace touchtrial::planning

@@ -22,7 +22,7 @@ void require_range(const char* option, int value, int low, int high) {
   throw UsageError(fmt::format("{}: {} is out of range; give {} to {}", option, value, low, high));
 }
 
-void settle_sizes(PowerPlan& plan) {
+void check_and_sort_sizes(PowerPlan& plan) {
   if (plan.participants.empty()) {
     throw UsageError("--participants: no size is given; give one or more, for instance 8,12,16");
   }
@@ -35,35 +35,36 @@ void settle_sizes(PowerPlan& plan) {
     require_range("--participants", size, 2, kMaxPowerParticipants);
   }
   std::ranges::sort(plan.participants);
-  const auto twice = std::ranges::adjacent_find(plan.participants);
-  if (twice != plan.participants.end()) {
-    throw UsageError(fmt::format("--participants: {} is given twice; give each size once", *twice));
+  const auto duplicate = std::ranges::adjacent_find(plan.participants);
+  if (duplicate != plan.participants.end()) {
+    throw UsageError(
+        fmt::format("--participants: {} is given twice; give each size once", *duplicate));
   }
 }
 
-/// Distinguishes subject models whose main numbers, the only ones in the text, are equal.
+/// Distinguishes subject models with equal main numbers, because the text shows only these.
 std::string digest_of(const simulation::SubjectModel& subject) {
-  constexpr std::size_t kShown = 12;
+  constexpr std::size_t kDigits = 12;
   FieldHasher hasher;
   hasher.add(simulation::subject_model_json(subject));
   hasher.add(device::device_model_json(subject.device));
-  return to_hex(hasher.finish()).substr(0, kShown);
+  return to_hex(hasher.finish()).substr(0, kDigits);
 }
 
 }  // namespace
 
 void validate_plan(PowerPlan& plan) {
-  settle_sizes(plan);
+  check_and_sort_sizes(plan);
   require_range("--runs", plan.runs, 1, kMaxPowerRuns);
   require_range("--explorations", plan.explorations, 1, kMaxExplorations);
   require_range("--trainings", plan.trainings, 1, kMaxTrainings);
-  const std::int64_t all =
+  const std::int64_t total_runs =
       static_cast<std::int64_t>(plan.participants.size()) * std::int64_t{plan.runs};
-  if (all > kMaxPowerRunsInAll) {
+  if (total_runs > kMaxTotalPowerRuns) {
     throw UsageError(
         fmt::format("--runs: {} runs of {} sizes are {} in total; give fewer runs or sizes, at "
                     "most {} in total",
-                    plan.runs, plan.participants.size(), all, kMaxPowerRunsInAll));
+                    plan.runs, plan.participants.size(), total_runs, kMaxTotalPowerRuns));
   }
 }
 
@@ -89,7 +90,7 @@ std::string words_of(const simulation::SubjectModel& subject) {
       "{}, {}, sense {}, feature_noise {} (spread {}), lapse {} (spread {}); digest {}",
       subject.source.empty() ? "built-in subject"
                              : one_line(std::filesystem::path(subject.source).filename().string()),
-      device::words_of_simulated(subject.device), simulation::name_of_sense(subject.sense),
+      device::simulated_device_name(subject.device), simulation::name_of_sense(subject.sense),
       number_text(subject.feature_noise), number_text(subject.feature_noise_spread),
       number_text(subject.lapse), number_text(subject.lapse_spread), digest_of(subject));
 }

@@ -17,14 +17,14 @@ inline constexpr int kMaxPowerRuns = 100'000;
 inline constexpr int kMaxPowerParticipants = 10'000;
 inline constexpr std::size_t kMaxPowerSizes = 64;
 /// The maximum total number of runs over all sizes.
-inline constexpr std::int64_t kMaxPowerRunsInAll = 1'000'000;
+inline constexpr std::int64_t kMaxTotalPowerRuns = 1'000'000;
 
 struct PowerPlan {
   std::vector<int> participants;  ///< sizes, rising, each once
   int runs = 1000;                ///< simulated studies of each size and hypothesis
   std::uint64_t seed = 1;
-  int explorations = 1000;  ///< of each stimulus, from which trials draw
-  int trainings = 16;       ///< from which studies draw
+  int explorations = 1000;  ///< per stimulus; trials draw from them
+  int trainings = 16;       ///< number of trained subjects that studies draw from
   double level = 0.05;      ///< of the primary test
   double margin = 0.0;      ///< of the primary test; 0: none
 };

@@ -39,15 +39,15 @@ struct ParameterEstimate {
 struct SwapCandidate {
   std::pair<std::string, std::string> labels;
   double gain = 0.0;  ///< in log likelihood, with everything else refitted
-  bool taken = false;
+  bool accepted = false;
 };
 
 struct SubjectFit {
-  simulation::SubjectModel subject;  ///< fitted; fixed parameters are the given subject's
+  simulation::SubjectModel subject;  ///< fitted; fixed parameters keep the initial subject's values
   /// Refitted to each simulated study: the uncertainty that the answers leave.
   std::vector<simulation::SubjectModel> draws;
   std::vector<ParameterEstimate> estimates;
-  std::vector<SwapCandidate> swaps;  ///< the most likely ones, best first
+  std::vector<SwapCandidate> swaps;  ///< the most likely swaps, best first
   double swap_threshold = 0.0;       ///< gain that a swap needs
   double log_likelihood = 0.0;
   int participants = 0;
@@ -63,9 +63,9 @@ struct SubjectFit {
   int bootstraps = 0;
   std::optional<double> noise_lapse_correlation;  ///< of the two estimates
   std::optional<PeopleSpread> people;             ///< nothing with one participant
-  double assumed_spread = 0.0;                    ///< of noise between people, in the given subject
-  bool spread_replaced = false;                   ///< the given spread was replaced by the estimate
-  std::vector<std::string> warnings;              ///< one line each
+  double assumed_spread = 0.0;        ///< of noise between people, in the initial subject
+  bool spread_replaced = false;       ///< whether the estimate replaced the initial spread
+  std::vector<std::string> warnings;  ///< one line each
 };
 
 /// Receives the finished share of a fit, 0 .. 1.
@@ -73,10 +73,10 @@ using FitProgress = std::function<void(double share)>;
 
 /// Maximises the likelihood of the counts, from several fixed starts. A label swap is accepted if
 /// its gain exceeds swap_threshold. Then the spread of noise between people is estimated from each
-/// participant's own answers. If they rule out the given spread (p <= 0.05), everything is refitted
-/// with the estimated one. Cost: some 200 to 1,000 evaluations of the model; a bootstrap draw
-/// refits a log-linear model with the fit's probabilities and slopes. The result depends on the
-/// arguments alone.
+/// participant's own answers. If they reject the initial spread (p <= 0.05), everything is refitted
+/// with the estimated one. Cost: 200 to 1,000 evaluations of the model; a bootstrap draw refits a
+/// log-linear model with the fit's probabilities and slopes. The result depends only on the
+/// arguments.
 /// \param model  of the same study, with `subject`'s hand and training
 /// \param subject  start of the search, and values of the fixed parameters
 [[nodiscard]] SubjectFit fit_subject(const AnswerModel& model, const FitCounts& counts,
@@ -85,7 +85,7 @@ using FitProgress = std::function<void(double share)>;
 
 /// The keys of the model that a fit ignores because it treats all trials of all people alike,
 /// separated by commas; "" if none.
-[[nodiscard]] std::string keys_that_fits_ignore(const simulation::SubjectModel& subject);
+[[nodiscard]] std::string keys_ignored_by_fits(const simulation::SubjectModel& subject);
 
 /// What the data of a finished fit leave undetermined, one line each.
 /// \param free  parameters that were to be estimated
@@ -97,9 +97,9 @@ using FitProgress = std::function<void(double share)>;
 struct AccuracyFit {
   simulation::SubjectModel subject;
   std::vector<std::string> classes;
-  std::vector<double> wanted;   ///< by class, 0 .. 1
-  std::vector<double> reached;  ///< by class, expected from the fitted subject
-  int parameters = 0;           ///< number of estimated parameters
+  std::vector<double> targets;              ///< by class, 0 .. 1
+  std::vector<double> expected_accuracies;  ///< by class, expected from the fitted subject
+  int parameters = 0;                       ///< number of estimated parameters
   double log_likelihood = 0.0;
   double best_log_likelihood = 0.0;  ///< of a model that reaches the accuracies exactly
   std::vector<std::string> warnings;
@@ -109,10 +109,10 @@ struct AccuracyFit {
 /// number of trials for each class. With at least as many parameters as classes, usually many
 /// subjects reach the accuracies exactly, and this is one of them. Label swaps are not searched.
 /// Source: docs/planning.md, "Published accuracies".
-/// \param wanted  by class, 0 .. 1
+/// \param targets  by class, 0 .. 1
 /// \param layouts  of the participants
 /// \throws std::invalid_argument unless there is one accuracy in range for each class
-[[nodiscard]] AccuracyFit fit_accuracies(const AnswerModel& model, std::vector<double> wanted,
+[[nodiscard]] AccuracyFit fit_accuracies(const AnswerModel& model, std::vector<double> targets,
                                          std::vector<PictureLayout> layouts,
                                          const simulation::SubjectModel& subject,
                                          const FreeParameters& free);

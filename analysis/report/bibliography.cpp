@@ -23,17 +23,17 @@ constexpr std::array kPublications = {
                 "Cochran WG (1950). The comparison of percentages in matched samples. Biometrika "
                 "37(3/4), 256-266."},
     Publication{Source::cumming_finch, "cumming2001",
-                "Cumming G, Finch S (2001). A primer on the understanding, use, and "
-                "calculation of confidence intervals that are based on central and noncentral "
-                "distributions. Educational and Psychological Measurement 61(4), 532-574."},
+                "Cumming G, Finch S (2001). A primer on the understanding, use, and calculation of "
+                "confidence intervals that are based on central and noncentral distributions. "
+                "Educational and Psychological Measurement 61(4), 532-574."},
     Publication{Source::davison_hinkley, "davison1997",
                 "Davison AC, Hinkley DV (1997). Bootstrap Methods and their Application. Cambridge "
                 "University Press."},
     Publication{
         Source::fagerland, "fagerland2013",
-        "Fagerland MW, Lydersen S, Laake P (2013). The McNemar test for binary matched-pairs "
-        "data: mid-p and asymptotic are better than exact conditional. BMC Medical Research "
-        "Methodology 13, 91."},
+        "Fagerland MW, Lydersen S, Laake P (2013). The McNemar test for binary matched-pairs data: "
+        "mid-p and asymptotic are better than exact conditional. BMC Medical Research Methodology "
+        "13, 91."},
     Publication{Source::fischer_whitney, "fischer2014",
                 "Fischer J, Whitney D (2014). Serial dependence in visual perception. Nature "
                 "Neuroscience 17(5), 738-743."},
@@ -110,9 +110,9 @@ constexpr std::array kPublications = {
                 "Research of the National Bureau of Standards 87(5), 377-385."},
     Publication{
         Source::phipson_smyth, "phipson2010",
-        "Phipson B, Smyth GK (2010). Permutation p-values should never be zero: calculating "
-        "exact p-values when permutations are randomly drawn. Statistical Applications in "
-        "Genetics and Molecular Biology 9(1), article 39."},
+        "Phipson B, Smyth GK (2010). Permutation p-values should never be zero: calculating exact "
+        "p-values when permutations are randomly drawn. Statistical Applications in Genetics and "
+        "Molecular Biology 9(1), article 39."},
     Publication{Source::prins, "prins2013",
                 "Prins N (2013). The psi-marginal adaptive method: how to give nuisance parameters "
                 "the attention they deserve (no more, no less). Journal of Vision 13(7), 3.",
@@ -140,8 +140,8 @@ constexpr std::array kPublications = {
     Publication{
         Source::townsend_landon, "townsend1982",
         "Townsend JT, Landon DE (1982). An experimental and theoretical investigation of the "
-        "constant-ratio rule and other models of visual letter confusion. Journal of "
-        "Mathematical Psychology 25(2), 119-162."},
+        "constant-ratio rule and other models of visual letter confusion. Journal of Mathematical "
+        "Psychology 25(2), 119-162."},
     Publication{Source::veale, "veale2014",
                 "Veale JF (2014). Edinburgh Handedness Inventory - Short Form: a revised version "
                 "based on confirmatory factor analysis. Laterality 19(2), 164-177.",

@@ -1,4 +1,4 @@
-/// \file The publications behind a report's statistics. How each is used: docs/statistics.md.
+/// \file The publications that reports cite. How each is used: docs/statistics.md.
 #pragma once
 
 #include <span>
@@ -6,7 +6,6 @@
 
 namespace touchtrial::analysis {
 
-/// A publication that a report may cite.
 enum class Source {
   benjamini_hochberg,
   brown_cai_dasgupta,
@@ -56,15 +55,14 @@ enum class Source {
 
 struct Publication {
   Source source{};
-  std::string_view key;   ///< "brown2001": the name in results.json
-  std::string_view text;  ///< authors, year, title, journal or publisher; ASCII, without an address
-  bool of_methods = false;  ///< only methods name it: it is not in results.json
+  std::string_view key;   ///< in results.json: "brown2001"
+  std::string_view text;  ///< authors, year, title, journal or publisher; ASCII, without a URL
+  bool is_only_in_methods = false;  ///< not in results.json
 };
 
-/// All publications, in ascending order of their keys, which is also the order of Source.
+/// All publications in the order of Source, which is also the alphabetical order of their keys.
 [[nodiscard]] std::span<const Publication> publications() noexcept;
 
-/// The citation text of one publication.
 [[nodiscard]] std::string_view citation_of(Source source) noexcept;
 
 }  // namespace touchtrial::analysis

@@ -2,6 +2,7 @@
 #include "analysis/report/json_figures.hpp"
 
 #include <map>
+#include <set>
 
 namespace touchtrial::analysis {
 namespace {
@@ -38,11 +39,10 @@ Json flow_json(const ParticipantFlow& flow) {
 
 Json practice_json(const std::optional<PracticeRecord>& practice) {
   if (!practice) return nullptr;
-  Json object{{"rounds", practice->rounds}, {"presentations", practice->presentations}};
-  object["correct"] = nullptr;
-  if (practice->correct) object["correct"] = *practice->correct;
-  object["passed"] = practice->passed;
-  return object;
+  return {{"rounds", practice->rounds},
+          {"presentations", practice->presentations},
+          {"correct", practice->correct ? Json(*practice->correct) : Json(nullptr)},
+          {"passed", practice->passed}};
 }
 
 Json answers_json(const SessionRecord& session) {
@@ -78,16 +78,14 @@ Json session_json(const SessionRecord& session) {
   object["replacement_reason"] = session.replacement_reason;
   object["stop_reason"] = session.stop_reason;
   object["withdrawal_reason"] = session.withdrawal_reason;
-  object["largest_force_n"] = nullptr;
-  if (session.largest_force_n) object["largest_force_n"] = figure_json(*session.largest_force_n);
+  object["largest_force_n"] = figure_json(session.largest_force_n);
   object["resumed"] = session.resumed;
   object["interruptions"] = session.interruptions;
   object["pauses"] = session.pauses;
   object["notes"] = session.notes;
-  object["deviations"] = Json::array();
-  for (const auto& [code, text] : session.deviations) {
-    object["deviations"].push_back({{"code", code}, {"text", text}});
-  }
+  object["deviations"] = array_json(session.deviations, [](const Deviation& deviation) {
+    return Json{{"code", deviation.code}, {"text", deviation.text}};
+  });
   return object;
 }
 
@@ -100,13 +98,11 @@ Json dates_json(const std::vector<SessionRecord>& sessions) {
 Json deviations_json(const Collection& collection) {
   std::map<std::string, int> sessions;
   for (const SessionRecord& session : collection.sessions) {
-    std::map<std::string, int> own;
-    for (const Deviation& deviation : session.deviations) own[deviation.code] = 1;
-    for (const auto& [code, once] : own) sessions[code] += once;
+    std::set<std::string> codes;
+    for (const Deviation& deviation : session.deviations) codes.insert(deviation.code);
+    for (const std::string& code : codes) ++sessions[code];
   }
-  Json all = Json::object();
-  for (const auto& [code, n] : sessions) all[code] = n;
-  return all;
+  return sessions;
 }
 
 }  // namespace

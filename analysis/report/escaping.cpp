@@ -11,7 +11,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// Characters with a LaTeX command of their own.
+/// Characters with their own LaTeX command.
 const std::map<std::uint32_t, const char*>& named_signs() {
   static const std::map<std::uint32_t, const char*> kSigns{
       {'\\', "\\textbackslash{}"},
@@ -62,40 +62,40 @@ const std::map<std::uint32_t, const char*>& named_signs() {
 
 constexpr std::uint32_t kNoCharacter = 0xfffd;
 
-std::uint32_t continued(const std::string& text, std::size_t at, std::size_t bytes,
-                        std::uint32_t lead) {
+std::uint32_t decoded_character(const std::string& text, std::size_t position, std::size_t bytes,
+                                std::uint32_t lead) {
   std::uint32_t code = lead;
   for (std::size_t i = 1; i < bytes; ++i) {
-    if (at + i >= text.size()) return kNoCharacter;
-    const auto next = static_cast<unsigned char>(text[at + i]);
+    if (position + i >= text.size()) return kNoCharacter;
+    const auto next = static_cast<unsigned char>(text[position + i]);
     if ((next & 0xc0U) != 0x80U) return kNoCharacter;
     code = (code << 6U) | (next & 0x3fU);
   }
   return code;
 }
 
-/// Reads the character at `at` and moves `at` past it. A byte that is not valid UTF-8 counts as one
-/// kNoCharacter.
-std::uint32_t next_character(const std::string& text, std::size_t& at) {
-  const auto first = static_cast<unsigned char>(text[at]);
+/// Reads the character at `position` and moves `position` past it. A byte that is not valid
+/// UTF-8 counts as one kNoCharacter.
+std::uint32_t next_character(const std::string& text, std::size_t& position) {
+  const auto first = static_cast<unsigned char>(text[position]);
   std::size_t bytes = 1;
   std::uint32_t code = first < 0x80U ? first : kNoCharacter;
   if ((first & 0xe0U) == 0xc0U) {
     bytes = 2;
-    code = continued(text, at, bytes, first & 0x1fU);
+    code = decoded_character(text, position, bytes, first & 0x1fU);
   } else if ((first & 0xf0U) == 0xe0U) {
     bytes = 3;
-    code = continued(text, at, bytes, first & 0x0fU);
+    code = decoded_character(text, position, bytes, first & 0x0fU);
   } else if ((first & 0xf8U) == 0xf0U) {
     bytes = 4;
-    code = continued(text, at, bytes, first & 0x07U);
+    code = decoded_character(text, position, bytes, first & 0x07U);
   }
-  at += code == kNoCharacter ? 1 : bytes;
+  position += code == kNoCharacter ? 1 : bytes;
   return code;
 }
 
 /// Accented Latin letters of T1 fonts: Latin-1, and the most common of Latin Extended-A.
-bool is_printed(std::uint32_t code) {
+bool is_t1_letter(std::uint32_t code) {
   return (code >= 0xc0 && code <= 0xff && code != 0xd7 && code != 0xf7) ||
          (code >= 0x102 && code <= 0x107) || (code >= 0x10c && code <= 0x111) ||
          (code >= 0x118 && code <= 0x11b) || code == 0x11e || code == 0x11f || code == 0x130 ||
@@ -108,59 +108,43 @@ bool is_printed(std::uint32_t code) {
 }  // namespace
 
 std::string xml_escaped(const std::string& text) {
-  std::string safe;
-  safe.reserve(text.size());
+  static const std::map<char, const char*> kEntities{
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
+  std::string escaped;
   for (const char c : one_line(text)) {
-    switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      case '\'':
-        safe += "&#39;";
-        break;
-      default:
-        safe += c;
-    }
+    const auto entity = kEntities.find(c);
+    escaped += entity == kEntities.end() ? std::string(1, c) : entity->second;
   }
-  return safe;
+  return escaped;
 }
 
 std::string markdown_escaped(const std::string& text) {
   constexpr std::string_view kMarkup = "\\`*_{}[]<>#|~&!$^";
-  std::string safe;
+  std::string escaped;
   for (const char c : one_line(text)) {
-    if (kMarkup.find(c) != std::string_view::npos) safe += '\\';
-    safe += c;
+    if (kMarkup.find(c) != std::string_view::npos) escaped += '\\';
+    escaped += c;
   }
-  return safe;
+  return escaped;
 }
 
 std::string latex_escaped(const std::string& text) {
-  std::string safe;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t begin = at;
-    const std::uint32_t code = next_character(text, at);
-    const auto named = named_signs().find(code);
-    if (named != named_signs().end()) {
-      safe += named->second;
+  std::string escaped;
+  for (std::size_t position = 0; position < text.size();) {
+    const std::size_t begin = position;
+    const std::uint32_t code = next_character(text, position);
+    const auto sign = named_signs().find(code);
+    if (sign != named_signs().end()) {
+      escaped += sign->second;
     } else if (code < 0x20 || code == 0x7f) {
-      safe += ' ';
-    } else if (code < 0x80 || is_printed(code)) {
-      safe += text.substr(begin, at - begin);
+      escaped += ' ';
+    } else if (code < 0x80 || is_t1_letter(code)) {
+      escaped += text.substr(begin, position - begin);
     } else {
-      safe += fmt::format("{{[}}U+{:04X}{{]}}", code);
+      escaped += fmt::format("{{[}}U+{:04X}{{]}}", code);
     }
   }
-  return safe;
+  return escaped;
 }
 
 }  // namespace touchtrial::analysis

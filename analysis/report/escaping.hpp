@@ -1,6 +1,6 @@
 /// \file Escapes text so that XML, HTML, Markdown or LaTeX shows it unchanged. Texts are UTF-8;
-/// labels and reasons come from users and may contain anything, also what core/printable.hpp finds
-/// misleading, which is then shown as there.
+/// labels and reasons come from users and may contain anything. Misleading characters are replaced
+/// as in core/printable.hpp.
 #pragma once
 
 #include <string>

@@ -44,8 +44,8 @@ nlohmann::ordered_json quartiles_json(const Quartiles& quartiles) {
           {"upper_quartile", figure_json(quartiles.upper)}};
 }
 
-std::optional<Interval> known(const Interval& interval, const Proportion& of) {
-  return of.n == 0 ? std::nullopt : std::optional(interval);
+std::optional<Interval> known_interval(const Interval& interval, const Proportion& trials) {
+  return trials.n == 0 ? std::nullopt : std::optional(interval);
 }
 
 void put_mean(nlohmann::ordered_json& object, const MeanEstimate& mean) {
@@ -97,10 +97,10 @@ nlohmann::ordered_json with_method(nlohmann::ordered_json object, const std::str
 
 nlohmann::ordered_json references_object() {
   nlohmann::ordered_json all = nlohmann::ordered_json::object();
-  for (const Publication& one : publications()) {
-    // Only the cues cite Lin, and they name the publication themselves.
-    if (one.source != Source::lin && !one.of_methods)
-      all[std::string(one.key)] = std::string(one.text);
+  for (const Publication& publication : publications()) {
+    // Only the cues cite Lin, with their own reference.
+    if (publication.source != Source::lin && !publication.is_only_in_methods)
+      all[std::string(publication.key)] = std::string(publication.text);
   }
   return all;
 }

@@ -19,7 +19,7 @@ namespace touchtrial::analysis {
 
 struct StudyHead;
 
-/// The number, or null if it does not exist or is not finite.
+/// The number, or null if it is missing or not finite.
 [[nodiscard]] nlohmann::ordered_json figure_json(std::optional<double> figure);
 
 /// [low, high]
@@ -30,14 +30,14 @@ struct StudyHead;
 /// t, degrees_of_freedom, and d with its interval; null without a t.
 [[nodiscard]] nlohmann::ordered_json statistic_json(const std::optional<TStatistic>& statistic);
 
-/// \return the interval around a share of trials, or nothing if there are no trials
-[[nodiscard]] std::optional<Interval> known(const Interval& interval, const Proportion& of);
+/// \return the interval, or nothing if there are no trials
+[[nodiscard]] std::optional<Interval> known_interval(const Interval& interval,
+                                                     const Proportion& trials);
 
-/// An array of what `one` makes of each element.
-template <typename Range, typename One>
-[[nodiscard]] nlohmann::ordered_json array_json(const Range& range, One one) {
+template <typename Range, typename ToJson>
+[[nodiscard]] nlohmann::ordered_json array_json(const Range& range, ToJson to_json) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
-  for (const auto& element : range) all.push_back(one(element));
+  for (const auto& element : range) all.push_back(to_json(element));
   return all;
 }
 
@@ -45,37 +45,35 @@ template <typename Range, typename One>
 void put_mean(nlohmann::ordered_json& object, const MeanEstimate& mean);
 
 [[nodiscard]] nlohmann::ordered_json statistics_json(const engine::GlcmStatistics& statistics);
-/// The statistics by the degrees of their direction.
+/// Statistics by direction in degrees.
 [[nodiscard]] nlohmann::ordered_json glcm_json(const engine::GlcmTable& glcm);
 
-/// Adds whether the numbers come from simulated participants, and if so also a stamp and, unless it
-/// is empty, for which device they hold ("simulated_on").
-/// \param device  device_words (text_figures.hpp)
+/// Adds `simulated`; if true also `stamp`, and the simulated device as `simulated_on`.
+/// \param device  device_words (text_figures.hpp); may be empty
 void put_stamp(nlohmann::ordered_json& object, bool simulated, const std::string& device = {});
 
 /// Adds state ("collecting", "closed" or "unblinded"), interim (unblinded but not closed) and
 /// pilot.
 void put_state(nlohmann::ordered_json& object, const record::StudyState& state, bool pilot);
 
-/// The members that begin every report: study, protocol, stamp, state, participants and trials.
+/// The first members of every report: study, protocol, stamp, state, participants and trials.
 [[nodiscard]] nlohmann::ordered_json head_object(const StudyHead& head);
 
-/// How sessions were conducted: prescription, flow, deviations and sessions.
+/// Prescription, flow, deviations and sessions.
 [[nodiscard]] nlohmann::ordered_json collection_object(const Collection& collection);
 [[nodiscard]] nlohmann::ordered_json registration_object(const study::Registration& registration);
-/// Quartiles with their n.
 [[nodiscard]] nlohmann::ordered_json quartiles_json(const Quartiles& quartiles);
 /// Adds whether the report is public, participants' characteristics in bands, and exploration.
 void put_people(nlohmann::ordered_json& object, const StudyHead& head);
-/// Adds what was registered, the answer, the prevalence, looks at outcomes and departures.
+/// Adds the registration, its answer, the prevalence, looks at outcomes and departures.
 void put_registered(nlohmann::ordered_json& object, const StudyHead& head);
-/// Every publication behind the report's statistics, by its key.
+/// The publications that results.json cites, by key.
 [[nodiscard]] nlohmann::ordered_json references_object();
 /// Adds how a section's numbers were computed.
 /// \param references  keys of references_object for the sources of the method
 void put_method(nlohmann::ordered_json& object, const std::string& method,
                 const std::vector<std::string>& references);
-/// The object with that.
+/// The object after put_method.
 [[nodiscard]] nlohmann::ordered_json with_method(nlohmann::ordered_json object,
                                                  const std::string& method,
                                                  const std::vector<std::string>& references);

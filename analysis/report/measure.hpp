@@ -1,6 +1,6 @@
-/// \file Numbers of a report, each described once: the member of results.json, the title and the
-/// cells of a table's column, the columns of a CSV file, and the note that says what it is. Tables,
-/// JSON objects and CSV files are made of lists of them. All functions are thread-safe.
+/// \file Numbers of a report, each described once: its member of results.json, its column in a table
+/// and in a CSV file, and its notes. Lists of them make tables, JSON objects and CSV files. All
+/// functions are thread-safe.
 #pragma once
 
 #include "analysis/exports/data_table.hpp"
@@ -22,34 +22,32 @@
 
 namespace touchtrial::analysis {
 
-/// One number of every `Row`.
+/// A number that each `Row` has.
 template <typename Row>
 struct Measure {
-  std::string member;  ///< of results.json; empty: for tables alone
-  std::string title;   ///< of the column; empty: for results.json alone
+  std::string member;  ///< of results.json; empty: only in tables
+  std::string title;   ///< of the column; empty: only in results.json
   std::function<nlohmann::ordered_json(const Row&)> json;
   std::function<Cell(const Row&)> cell;
   Align align = Align::right;
-  std::vector<Cited> notes{};  ///< stand below a table that has the column
-  bool only_known = false;     ///< leave the column out if no row has the number
-  /// Columns of a CSV file: one for a number, one for each end or member of an interval or object;
-  /// an empty name leaves that part out.
+  std::vector<CitedText> notes{};  ///< below a table with the column
+  bool hide_if_unknown = false;    ///< omit the column if no row has the number
+  /// Columns of a CSV file: one for a number, one for each part of an interval or object; an empty
+  /// name omits the part.
   std::vector<std::string> columns{};
-  std::vector<std::string> within{};  ///< members of a member that is an object
+  std::vector<std::string> inner_members{};  ///< if the member is an object
 
-  /// The same number with a note.
-  [[nodiscard]] Measure with(std::string text, std::vector<Source> sources = {}) && {
+  [[nodiscard]] Measure with_note(std::string text, std::vector<Source> sources = {}) && {
     notes.push_back({std::move(text), std::move(sources)});
     return std::move(*this);
   }
-  [[nodiscard]] Measure if_known() && {
-    only_known = true;
+  [[nodiscard]] Measure hidden_if_unknown() && {
+    hide_if_unknown = true;
     return std::move(*this);
   }
-  /// The same number with cells of its own.
-  [[nodiscard]] Measure shown(std::string heading, std::function<Cell(const Row&)> written) && {
+  [[nodiscard]] Measure with_cells(std::string heading, std::function<Cell(const Row&)> format) && {
     title = std::move(heading);
-    cell = std::move(written);
+    cell = std::move(format);
     return std::move(*this);
   }
   [[nodiscard]] Measure in_csv(std::vector<std::string> names) && {
@@ -61,16 +59,15 @@ struct Measure {
 template <typename Row>
 using MeasureList = std::vector<Measure<Row>>;
 
-/// The lists one after the other.
 template <typename Row>
 [[nodiscard]] MeasureList<Row> joined_measures(std::vector<MeasureList<Row>> lists) {
   MeasureList<Row> all;
-  for (MeasureList<Row>& one : lists) std::ranges::move(one, std::back_inserter(all));
+  for (MeasureList<Row>& list : lists) std::ranges::move(list, std::back_inserter(all));
   return all;
 }
 
-/// The list with columns for members that had none.
-/// \param titles  of the columns, by member
+/// Gives members a column in tables.
+/// \param titles  by member
 template <typename Row>
 [[nodiscard]] MeasureList<Row> titled(
     MeasureList<Row> list, const std::vector<std::pair<std::string, std::string>>& titles) {
@@ -97,29 +94,29 @@ template <typename Row, typename Get>
           [get](const Row& row) { return Cell(std::to_string(std::invoke(get, row))); }};
 }
 
-/// \param written  how a table has an optional number: share_figure, decimals(2)
-template <typename Row, typename Written, typename Get>
-[[nodiscard]] Measure<Row> number_of(std::string member, std::string title, Written written,
+/// \param format  of the cells: share_figure, decimals(2)
+template <typename Row, typename Format, typename Get>
+[[nodiscard]] Measure<Row> number_of(std::string member, std::string title, Format format,
                                      Get get) {
   return {std::move(member), std::move(title),
           [get](const Row& row) { return figure_json(std::invoke(get, row)); },
-          [get, written](const Row& row) { return Cell(written(std::invoke(get, row))); }};
+          [get, format](const Row& row) { return Cell(format(std::invoke(get, row))); }};
 }
 
-/// \param written  how a table has an optional interval: share_range, range_decimals(2)
-template <typename Row, typename Written, typename Get>
-[[nodiscard]] Measure<Row> interval_of(std::string member, std::string title, Written written,
+/// \param format  of the cells: share_range, range_decimals(2)
+template <typename Row, typename Format, typename Get>
+[[nodiscard]] Measure<Row> interval_of(std::string member, std::string title, Format format,
                                        Get get) {
   return {std::move(member), std::move(title),
           [get](const Row& row) {
             return interval_json(std::optional<Interval>(std::invoke(get, row)));
           },
-          [get, written](const Row& row) {
-            return Cell(written(std::optional<Interval>(std::invoke(get, row))));
+          [get, format](const Row& row) {
+            return Cell(format(std::optional<Interval>(std::invoke(get, row))));
           }};
 }
 
-/// A column without a member of results.json.
+/// A column that is not in results.json.
 template <typename Row, typename Get>
 [[nodiscard]] Measure<Row> column_of(std::string title, Get get) {
   return {"", std::move(title), {}, [get](const Row& row) { return Cell(std::invoke(get, row)); }};
@@ -143,36 +140,43 @@ template <typename Row, typename Get>
 
 /// \}
 
-/// \name Measures of a part of a row. `get` takes a row and gives the part, an optional one, or a
-/// pointer to it; of a part that does not exist every number is unknown.
+/// \name Measures of a part of a row. `get` takes a row and returns the part, an optional part or a
+/// pointer; the numbers of a missing part are unknown.
 /// \{
 
-/// The part, or null.
-template <typename Part, typename Got>
-[[nodiscard]] const Part* part_in(const Got& got) {
-  if constexpr (std::is_same_v<Part, Got>) {
-    return &got;
+/// \return null if the part is missing
+template <typename Part, typename Value>
+[[nodiscard]] const Part* part_in(const Value& value) {
+  if constexpr (std::is_same_v<Part, Value>) {
+    return &value;
   } else {
-    return got ? &*got : nullptr;
+    return value ? &*value : nullptr;
   }
 }
 
-/// The measures of a part as those of the row.
+/// The measures of a part as measures of the row.
 template <typename Row, typename Part, typename Get>
-[[nodiscard]] MeasureList<Row> measures_in(Get get, const MeasureList<Part>& of_part) {
+[[nodiscard]] MeasureList<Row> measures_in(Get get, const MeasureList<Part>& part_measures) {
   MeasureList<Row> all;
-  for (const Measure<Part>& one : of_part) {
-    Measure<Row> outer{one.member, one.title,      {},          {},        one.align,
-                       one.notes,  one.only_known, one.columns, one.within};
-    const auto of = [get](auto written, auto missing) {
-      return [get, written, missing](const Row& row) -> decltype(missing) {
-        const auto& got = std::invoke(get, row);
-        const Part* part = part_in<Part, std::remove_cvref_t<decltype(got)>>(got);
-        return part == nullptr ? missing : written(*part);
+  for (const Measure<Part>& measure : part_measures) {
+    Measure<Row> outer{measure.member,
+                       measure.title,
+                       {},
+                       {},
+                       measure.align,
+                       measure.notes,
+                       measure.hide_if_unknown,
+                       measure.columns,
+                       measure.inner_members};
+    const auto row_function = [get](auto part_function, auto missing) {
+      return [get, part_function, missing](const Row& row) -> decltype(missing) {
+        const auto& value = std::invoke(get, row);
+        const Part* part = part_in<Part, std::remove_cvref_t<decltype(value)>>(value);
+        return part == nullptr ? missing : part_function(*part);
       };
     };
-    if (one.json) outer.json = of(one.json, nlohmann::ordered_json());
-    if (one.cell) outer.cell = of(one.cell, Cell(kNoFigure));
+    if (measure.json) outer.json = row_function(measure.json, nlohmann::ordered_json());
+    if (measure.cell) outer.cell = row_function(measure.cell, Cell(kNoFigure));
     all.push_back(std::move(outer));
   }
   return all;
@@ -180,7 +184,8 @@ template <typename Row, typename Part, typename Get>
 
 /// \}
 
-/// Writes numbers with so many decimals, and a sign only if they are negative.
+/// \name Formats of cells
+/// \{
 [[nodiscard]] inline auto decimals(int digits) {
   return [digits](std::optional<double> number) { return plain_figure(number, digits); };
 }
@@ -190,6 +195,7 @@ template <typename Row, typename Part, typename Get>
 [[nodiscard]] inline auto range_decimals(int digits) {
   return [digits](const std::optional<Interval>& range) { return plain_range(range, digits); };
 }
+/// \}
 
 /// Participants, mean, Student's interval and standard deviation.
 /// \param get  the MeanEstimate of a row
@@ -206,12 +212,12 @@ void add_mean(int digits, Get get, MeasureList<Row>& all) {
                                [get](const Row& row) { return std::invoke(get, row).sd; }));
 }
 
-/// The members of one row.
+/// The JSON object of one row.
 template <typename Row>
 [[nodiscard]] nlohmann::ordered_json object_of(const Row& row, const MeasureList<Row>& measures) {
   nlohmann::ordered_json object = nlohmann::ordered_json::object();
-  for (const Measure<Row>& one : measures) {
-    if (!one.member.empty()) object[one.member] = one.json(row);
+  for (const Measure<Row>& measure : measures) {
+    if (!measure.member.empty()) object[measure.member] = measure.json(row);
   }
   return object;
 }
@@ -222,89 +228,90 @@ template <typename Row>
   return array_json(rows, [&](const Row& row) { return object_of(row, measures); });
 }
 
-/// The names of the members; of members of an object "outer.inner".
+/// The names of the members; nested ones are "outer.inner".
 template <typename Row>
 [[nodiscard]] std::vector<std::string> members_of(const MeasureList<Row>& measures) {
   std::vector<std::string> all;
-  for (const Measure<Row>& one : measures) {
-    if (one.member.empty()) continue;
-    all.push_back(one.member);
-    for (const std::string& inner : one.within) all.push_back(one.member + "." + inner);
+  for (const Measure<Row>& measure : measures) {
+    if (measure.member.empty()) continue;
+    all.push_back(measure.member);
+    for (const std::string& inner : measure.inner_members)
+      all.push_back(measure.member + "." + inner);
   }
   return all;
 }
 
-/// One member that is an object: the measures of a part of the row; null without the part.
+/// A member that is an object, with the measures of a part of the row; null if the part is missing.
 template <typename Row, typename Part, typename Get>
-[[nodiscard]] Measure<Row> object_in(std::string member, Get get, MeasureList<Part> of_part) {
-  std::vector<std::string> within = members_of(of_part);
+[[nodiscard]] Measure<Row> object_in(std::string member, Get get, MeasureList<Part> part_measures) {
+  std::vector<std::string> inner_members = members_of(part_measures);
   Measure<Row> object = member_of<Row>(
       std::move(member),
-      [get, of_part = std::move(of_part)](const Row& row) -> nlohmann::ordered_json {
-        const auto& got = std::invoke(get, row);
-        const Part* part = part_in<Part, std::remove_cvref_t<decltype(got)>>(got);
-        return part == nullptr ? nlohmann::ordered_json() : object_of(*part, of_part);
+      [get, part_measures = std::move(part_measures)](const Row& row) -> nlohmann::ordered_json {
+        const auto& value = std::invoke(get, row);
+        const Part* part = part_in<Part, std::remove_cvref_t<decltype(value)>>(value);
+        return part == nullptr ? nlohmann::ordered_json() : object_of(*part, part_measures);
       });
-  object.within = std::move(within);
+  object.inner_members = std::move(inner_members);
   return object;
 }
 
-/// The part as one member of results.json, and its measures as columns of a table.
+/// A part as an object in results.json, with its measures as columns of a table.
 template <typename Row, typename Part, typename Get>
 [[nodiscard]] MeasureList<Row> part_of(std::string member, Get get,
-                                       const MeasureList<Part>& of_part) {
-  MeasureList<Row> all = measures_in<Row>(get, of_part);
-  for (Measure<Row>& one : all) one.member.clear();
-  all.push_back(object_in<Row>(std::move(member), get, of_part));
+                                       const MeasureList<Part>& part_measures) {
+  MeasureList<Row> all = measures_in<Row>(get, part_measures);
+  for (Measure<Row>& measure : all) measure.member.clear();
+  all.push_back(object_in<Row>(std::move(member), get, part_measures));
   return all;
 }
 
-/// The cell of a CSV file with a number or text of results.json.
+/// The CSV cell of a number or text of results.json.
 [[nodiscard]] DataCell data_cell(const nlohmann::ordered_json& value);
 
-/// A CSV file's table: the columns of the measures that have some, in their order.
+/// The table of a CSV file: the CSV columns of all measures.
 template <typename Row>
 [[nodiscard]] DataTable data_table_of(const std::vector<Row>& rows,
                                       const MeasureList<Row>& measures) {
   DataTable table;
   table.rows.resize(rows.size());
-  for (const Measure<Row>& one : measures) {
-    std::ranges::copy_if(one.columns, std::back_inserter(table.columns),
+  for (const Measure<Row>& measure : measures) {
+    std::ranges::copy_if(measure.columns, std::back_inserter(table.columns),
                          [](const std::string& name) { return !name.empty(); });
-    for (std::size_t i = 0; i < rows.size() && !one.columns.empty(); ++i) {
-      const nlohmann::ordered_json value = one.json(rows[i]);
+    for (std::size_t i = 0; i < rows.size() && !measure.columns.empty(); ++i) {
+      const nlohmann::ordered_json value = measure.json(rows[i]);
       auto part = value.begin();
-      for (const std::string& name : one.columns) {
-        const bool is_whole = !value.is_structured();
-        if (!name.empty()) table.rows[i].push_back(data_cell(is_whole ? value : *part));
-        if (!is_whole) ++part;
+      for (const std::string& name : measure.columns) {
+        if (!name.empty()) {
+          table.rows[i].push_back(data_cell(value.is_structured() ? *part : value));
+        }
+        if (value.is_structured()) ++part;
       }
     }
   }
   return table;
 }
 
-/// Fills a table without columns: one for each measure that has a title, one row for each row, and
-/// the measures' notes.
+/// A table with one column per measure that has a title, one line per element of `rows`, and the
+/// measures' notes.
 template <typename Row>
 [[nodiscard]] Table table_of(std::string id, std::string caption, const std::vector<Row>& rows,
                              const MeasureList<Row>& measures) {
   Table table{std::move(id), std::move(caption), {}};
   table.rows.resize(rows.size());
-  for (const Measure<Row>& one : measures) {
-    if (one.title.empty()) continue;
+  for (const Measure<Row>& measure : measures) {
+    if (measure.title.empty()) continue;
     std::vector<Cell> cells;
-    for (const Row& row : rows) cells.push_back(one.cell(row));
+    for (const Row& row : rows) cells.push_back(measure.cell(row));
     const auto is_unknown = [](const Cell& cell) { return cell.text == kNoFigure; };
-    if (one.only_known && std::ranges::all_of(cells, is_unknown)) continue;
-    table.columns.push_back({one.title, table.columns.empty() ? Align::left : one.align});
+    if (measure.hide_if_unknown && std::ranges::all_of(cells, is_unknown)) continue;
+    table.columns.push_back({measure.title, table.columns.empty() ? Align::left : measure.align});
     for (std::size_t i = 0; i < cells.size(); ++i) table.rows[i].push_back(std::move(cells[i]));
-    table.notes.insert(table.notes.end(), one.notes.begin(), one.notes.end());
+    table.notes.insert(table.notes.end(), measure.notes.begin(), measure.notes.end());
   }
   return table;
 }
 
-/// The share of people who would pass their own test.
 [[nodiscard]] MeasureList<Prevalence> prevalence_measures();
 
 }  // namespace touchtrial::analysis

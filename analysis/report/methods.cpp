@@ -17,7 +17,7 @@ namespace {
 constexpr const char* kSection = "methods";
 constexpr const char* kStimuli = "methods-stimuli";
 
-/// The rate that the first trace of the study states.
+/// The servo rate in the first trace of the study.
 std::optional<double> rate_of(const record::StudyStore& store) {
   for (const record::SessionRow& session : store.sessions()) {
     if (session.erased) continue;
@@ -31,23 +31,24 @@ std::optional<double> rate_of(const record::StudyStore& store) {
 }
 
 void add_pack(const engine::Pack& pack, const study::StudyKey& key, RecordedStudy& recorded) {
-  RecordedStudy read = recorded;
+  RecordedStudy complete = recorded;
   try {
-    for (const study::KeyedStimulus& one : key.stimuli) {
-      const engine::Gains gains = pack.entry(one.code).gains;
-      const engine::MappedField field = pack.map(one.code);
+    for (const study::KeyedStimulus& stimulus : key.stimuli) {
+      const engine::Gains gains = pack.entry(stimulus.code).gains;
+      const engine::MappedField field = pack.map(stimulus.code);
       const PlaneGeometry plane = field.view().geometry;
-      read.gains.push_back(gains);
-      read.lateral_rms_n.push_back(
+      complete.gains.push_back(gains);
+      complete.lateral_rms_n.push_back(
           engine::field_statistics(field.view(), gains, key.study.rendering).tangential_rms_n);
-      if (std::ranges::find(read.planes, plane) == read.planes.end()) read.planes.push_back(plane);
+      if (std::ranges::find(complete.planes, plane) == complete.planes.end())
+        complete.planes.push_back(plane);
     }
   } catch (const FileError&) {
-    return;  // What a damaged pack holds is not known.
+    return;  // the pack is damaged
   } catch (const std::invalid_argument&) {
     return;
   }
-  recorded = std::move(read);
+  recorded = std::move(complete);
 }
 
 }  // namespace
@@ -65,7 +66,7 @@ RecordedStudy recorded_study(const record::StudyStore& store, const study::Study
 Section methods_section(const StudyHead& head, const Outcomes& outcomes,
                         const RecordedStudy& recorded, const ProtocolMethods& protocol) {
   Section section{kSection, "Methods", {}, true};
-  const auto add = [&section](const char* id, const char* title, Cited paragraph) {
+  const auto add = [&section](const char* id, const char* title, CitedText paragraph) {
     section.blocks.emplace_back(Subheading{id, title});
     section.blocks.emplace_back(std::move(paragraph));
   };
@@ -85,7 +86,7 @@ void add_to_stimuli(Document& document, const std::string& sentence) {
     if (heading != nullptr && heading->id == kStimuli) break;
   }
   for (; block != section->blocks.end(); ++block) {
-    auto* paragraph = std::get_if<Cited>(&*block);
+    auto* paragraph = std::get_if<CitedText>(&*block);
     if (paragraph == nullptr) continue;
     paragraph->text += ' ' + sentence;
     return;
@@ -95,13 +96,13 @@ void add_to_stimuli(Document& document, const std::string& sentence) {
 std::string methods_markdown(const Document& document) {
   const auto section = std::ranges::find(document.sections, kSection, &Section::id);
   if (section == document.sections.end()) return {};
-  Document alone;
-  alone.title = document.title;
-  alone.stamp = document.stamp;
-  alone.banners = document.banners;
-  alone.sections = {*section};
-  alone.colophon = document.colophon;
-  return document_markdown(alone, "figures");
+  Document methods_only;
+  methods_only.title = document.title;
+  methods_only.stamp = document.stamp;
+  methods_only.banners = document.banners;
+  methods_only.sections = {*section};
+  methods_only.colophon = document.colophon;
+  return document_markdown(methods_only, "figures");
 }
 
 std::string author_and_year(Source source) {
@@ -115,10 +116,10 @@ std::string author_and_year(Source source) {
     names.emplace_back(name.substr(0, name.find(' ')));
     authors.remove_prefix(std::min(comma + 2, authors.size()));
   }
-  std::string who = names.front();
-  if (names.size() == 2) who += " and " + names.back();
-  if (names.size() > 2) who += " et al.";
-  return who + ", " + std::string(text.substr(open + 2, text.find(')', open) - open - 2));
+  std::string citation = names.front();
+  if (names.size() == 2) citation += " and " + names.back();
+  if (names.size() > 2) citation += " et al.";
+  return citation + ", " + std::string(text.substr(open + 2, text.find(')', open) - open - 2));
 }
 
 std::string joined_fields(const std::vector<std::pair<std::string, std::string>>& fields) {
@@ -147,7 +148,7 @@ std::vector<const SessionRecord*> counted_records(const StudyHead& head, const O
   return records;
 }
 
-void Paragraph::say(std::string_view sentence, const std::vector<Source>& sources) {
+void Paragraph::add(std::string_view sentence, const std::vector<Source>& sources) {
   if (sentence.empty()) return;
   std::string text(sentence);
   if (!sources.empty()) {
@@ -163,8 +164,8 @@ void Paragraph::say(std::string_view sentence, const std::vector<Source>& source
   cited_.text += (cited_.text.empty() ? "" : " ") + text;
 }
 
-void Paragraph::say(const Sentences& sentences) {
-  for (const Cited& one : sentences) say(one.text, one.sources);
+void Paragraph::add(const Sentences& sentences) {
+  for (const CitedText& sentence : sentences) add(sentence.text, sentence.sources);
 }
 
 }  // namespace touchtrial::analysis

@@ -1,5 +1,5 @@
-/// \file The methods of a study as a paper writes them: paragraphs to be copied, made from what was
-/// run and registered. A fact that a study does not have is left out. Docs: docs/report.md.
+/// \file The methods section of a paper: paragraphs to copy, made from what was run and registered.
+/// Facts that a study lacks are left out. Docs: docs/report.md.
 #pragma once
 
 #include "analysis/outcomes/outcomes.hpp"
@@ -14,42 +14,42 @@
 
 namespace touchtrial::analysis {
 
-/// Sentences, each with its full stop, and the publications that they name.
-using Sentences = std::vector<Cited>;
+/// Sentences with full stops, and the publications that they cite.
+using Sentences = std::vector<CitedText>;
 
-/// What a protocol says of its study.
+/// Sentences of a protocol.
 struct ProtocolMethods {
-  Sentences trial;       ///< what was asked in a trial, and how it was answered
-  Sentences sequence;    ///< the number of trials, their order, and the procedure that chose them
-  Sentences statistics;  ///< of the protocol's page
+  Sentences trial;       ///< the question of a trial, and how it was answered
+  Sentences sequence;    ///< number and order of trials, and the adaptive procedure
+  Sentences statistics;  ///< in the order of the page
 };
 
-/// What a database and its pack tell besides the outcomes.
+/// Facts from a database and its pack.
 struct RecordedStudy {
-  std::string program_version{};        ///< with which the study was begun; empty: not known
-  std::string seal{};                   ///< hexadecimal; empty: not known
-  std::string pack{};                   ///< digest of the pack, hexadecimal; empty: not known
-  std::optional<double> rate_hz{};      ///< of the servo, as the first trace states it
-  std::vector<engine::Gains> gains{};   ///< of each stimulus; empty: no pack in reach
-  std::vector<double> lateral_rms_n{};  ///< engine::FieldStatistics::tangential_rms_n, likewise
-  std::vector<PlaneGeometry> planes{};  ///< the different sizes of planes; empty likewise
+  std::string program_version{};        ///< at the start of the study; empty: unknown
+  std::string seal{};                   ///< hexadecimal; empty: unknown
+  std::string pack{};                   ///< digest of the pack, hexadecimal; empty: unknown
+  std::optional<double> rate_hz{};      ///< of the servo, from the first trace
+  std::vector<engine::Gains> gains{};   ///< of each stimulus; empty: no pack found
+  std::vector<double> lateral_rms_n{};  ///< of each stimulus's forces; empty: no pack found
+  std::vector<PlaneGeometry> planes{};  ///< distinct sizes of planes; empty: no pack found
 };
 
-/// Reads them. A pack that is out of reach, or another one, leaves gains and planes empty.
+/// A missing, damaged or different pack leaves gains, forces and planes empty.
 [[nodiscard]] RecordedStudy recorded_study(const record::StudyStore& store,
                                            const study::StudyKey& key);
 
-/// The section "methods" of a page: participants, apparatus and stimuli, procedure, data analysis,
-/// each a paragraph under its subheading.
+/// The section "methods" of a page, with a subheading for each paragraph: participants, apparatus
+/// and stimuli, procedure, data analysis.
 /// \param head  of these outcomes
 [[nodiscard]] Section methods_section(const StudyHead& head, const Outcomes& outcomes,
                                       const RecordedStudy& recorded,
                                       const ProtocolMethods& protocol);
 
-/// Adds a sentence on the stimuli to a document with such a section.
+/// Adds a sentence to the paragraph on stimuli, if the document has a methods section.
 void add_to_stimuli(Document& document, const std::string& sentence);
 
-/// The section alone with its references, in Markdown; empty if the document has none.
+/// The methods section with its references, in Markdown; empty if the document has none.
 [[nodiscard]] std::string methods_markdown(const Document& document);
 
 }  // namespace touchtrial::analysis

@@ -10,20 +10,22 @@
 
 namespace touchtrial::analysis {
 
-/// A paragraph in the making. Sources are named in the text, as "(Holm, 1979)", and kept for the
-/// list of references.
+/// Builds a paragraph. Sources are cited in the text, as "(Holm, 1979)", and collected for the list
+/// of references.
 class Paragraph {
  public:
-  /// \param sentence  with its full stop; empty: none
-  /// \param sources  named before the full stop
-  void say(std::string_view sentence, const std::vector<Source>& sources = {});
-  void say(const Sentences& sentences);
+  /// \param sentence  with its full stop; may be empty
+  /// \param sources  cited before the full stop
+  void add(std::string_view sentence, const std::vector<Source>& sources = {});
+  void add(const Sentences& sentences);
 
-  [[nodiscard]] const Cited& cited() const noexcept { return cited_; }
+  [[nodiscard]] const CitedText& cited() const noexcept { return cited_; }
 
  private:
-  Cited cited_;
+  CitedText cited_;
 };
+
+inline constexpr std::size_t kHashDigits = 16;  ///< digits shown of a hash
 
 /// "Brown et al., 2001"
 [[nodiscard]] std::string author_and_year(Source source);
@@ -32,18 +34,18 @@ class Paragraph {
 [[nodiscard]] std::string joined_fields(
     const std::vector<std::pair<std::string, std::string>>& fields);
 
-/// What somebody wrote in a study file, as one line in quotation marks.
+/// A text of a study file, as one line in quotation marks.
 [[nodiscard]] std::string quoted_statement(const std::string& text);
 
-[[nodiscard]] Cited participants_paragraph(const StudyHead& head, const Outcomes& outcomes);
-[[nodiscard]] Cited stimuli_paragraph(const StudyHead& head, const Outcomes& outcomes,
-                                      const RecordedStudy& recorded);
-[[nodiscard]] Cited procedure_paragraph(const StudyHead& head, const Outcomes& outcomes,
-                                        const ProtocolMethods& protocol);
-[[nodiscard]] Cited analysis_paragraph(const Outcomes& outcomes, const RecordedStudy& recorded,
-                                       const ProtocolMethods& protocol);
+[[nodiscard]] CitedText participants_paragraph(const StudyHead& head, const Outcomes& outcomes);
+[[nodiscard]] CitedText stimuli_paragraph(const StudyHead& head, const Outcomes& outcomes,
+                                          const RecordedStudy& recorded);
+[[nodiscard]] CitedText procedure_paragraph(const StudyHead& head, const Outcomes& outcomes,
+                                            const ProtocolMethods& protocol);
+[[nodiscard]] CitedText analysis_paragraph(const Outcomes& outcomes, const RecordedStudy& recorded,
+                                           const ProtocolMethods& protocol);
 
-/// The records of the sessions that count.
+/// The records of counted sessions.
 [[nodiscard]] std::vector<const SessionRecord*> counted_records(const StudyHead& head,
                                                                 const Outcomes& outcomes);
 

@@ -1,6 +1,7 @@
-// Who took part.
+// The paragraph on participants.
 #include "analysis/outcomes/collection_records.hpp"
 #include "analysis/report/methods_parts.hpp"
+#include "analysis/report/text_figures.hpp"
 #include "core/text.hpp"
 #include "study/registration_words.hpp"
 
@@ -9,17 +10,13 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace touchtrial::analysis {
 namespace {
 
 std::string people_noun(const StudyHead& head) {
   return head.simulated ? "simulated participant" : "participant";
-}
-
-/// "1 withdrew and had the data erased", for a reason of which there is at least one.
-void note_leaving(int people, const char* words, std::vector<std::string>& leaving) {
-  if (people > 0) leaving.push_back(fmt::format("{} {}", people, words));
 }
 
 std::string excluded_words(const ParticipantFlow& flow) {
@@ -30,38 +27,36 @@ std::string excluded_words(const ParticipantFlow& flow) {
   return reasons.empty() ? "excluded" : "excluded (" + listed(reasons) + ")";
 }
 
-std::string leaving_words(const ParticipantFlow& flow) {
-  std::vector<std::string> leaving;
-  note_leaving(flow.erased, "withdrew and had the data erased", leaving);
-  note_leaving(flow.replaced, "replaced by somebody else", leaving);
+std::string losses_words(const ParticipantFlow& flow) {
+  std::vector<std::string> losses;
+  add_people(flow.erased, "withdrew and had the data erased", losses);
+  add_people(flow.replaced, "replaced by another participant", losses);
   if (flow.excluded > 0) {
-    leaving.push_back(fmt::format("{} {}", flow.excluded, excluded_words(flow)));
+    losses.push_back(fmt::format("{} {}", flow.excluded, excluded_words(flow)));
   }
-  note_leaving(flow.stopped, "with a session that was stopped early", leaving);
-  note_leaving(flow.open, "with a session that had not ended", leaving);
-  note_leaving(flow.other_kind, "in pilot or simulated sessions", leaving);
-  note_leaving(flow.unseen, "completed after the interim look", leaving);
-  return listed(leaving, " and ");
+  add_people(flow.stopped, "with a session that was stopped early", losses);
+  add_people(flow.open, "with a session that had not ended", losses);
+  add_people(flow.other_kind, "in pilot or simulated sessions", losses);
+  add_people(flow.unseen, "completed after the interim look", losses);
+  return listed(losses, " and ");
 }
 
 std::string number_sentence(const StudyHead& head) {
   const ParticipantFlow& flow = head.collection.flow;
-  const std::string pilot = head.pilot ? " This was a pilot." : "";
-  const std::string leaving = leaving_words(flow);
-  if (leaving.empty()) {
-    return fmt::format("In all, {} took part.", counted(head.participants, people_noun(head))) +
-           pilot;
-  }
-  return fmt::format("In all, {} were enrolled and {} analysed; left out were {}.",
-                     counted(flow.enrolled, people_noun(head)), head.participants, leaving) +
-         pilot;
+  const std::string losses = losses_words(flow);
+  const std::string text =
+      losses.empty()
+          ? fmt::format("In all, {} took part.", counted(head.participants, people_noun(head)))
+          : fmt::format("In all, {} were enrolled and {} analysed; left out were {}.",
+                        counted(flow.enrolled, people_noun(head)), head.participants, losses);
+  return text + (head.pilot ? " This was a pilot." : "");
 }
 
 std::string simulated_sentence(const StudyHead& head) {
   if (!head.simulated) return {};
-  return "Models of a hand and of a sense of touch took the place of people, so that everything "
-         "below on what participants saw, heard, were told and were asked is what the study "
-         "prescribes for people.";
+  return "Models of a hand and of the sense of touch replaced people. Statements below on what "
+         "participants saw, heard, were told and were asked describe what the study prescribes for "
+         "people.";
 }
 
 std::string dates_sentence(const StudyHead& head) {
@@ -71,26 +66,26 @@ std::string dates_sentence(const StudyHead& head) {
   return "Sessions took place from " + dates->first + " to " + dates->last + ".";
 }
 
-/// "age 20-29 (12)", without characteristics whose bands are all too small to be shown.
-void say_demographics(const StudyHead& head, Paragraph& paragraph) {
+/// Adds "age 20-29 (12)", without characteristics whose bands are all too small.
+void add_demographics(const StudyHead& head, Paragraph& paragraph) {
   std::vector<std::string> all;
   bool has_hand = false;
-  for (const Characteristic& one : head.demographics) {
-    if (one.bands.empty()) continue;
+  for (const Characteristic& characteristic : head.demographics) {
+    if (characteristic.bands.empty()) continue;
     std::vector<std::string> bands;
-    for (const Band& band : one.bands) {
+    for (const Band& band : characteristic.bands) {
       bands.push_back(fmt::format("{} ({})", band.name, band.people));
     }
-    if (one.others > 0) bands.push_back(fmt::format("others and not told ({})", one.others));
-    all.push_back(one.name + ' ' + listed(bands));
-    has_hand = has_hand || one.name == "handedness";
+    if (characteristic.others > 0)
+      bands.push_back(fmt::format("others and not stated ({})", characteristic.others));
+    all.push_back(characteristic.name + ' ' + listed(bands));
+    has_hand = has_hand || characteristic.name == "handedness";
   }
   if (all.empty()) return;
-  std::string text;
-  for (const std::string& one : all) text += (text.empty() ? "" : "; ") + one;
-  text = fmt::format("By their own account, in bands of {} people or more: {}", kMinOfBand, text);
+  std::string text = fmt::format("Self-reported, in bands of at least {} people: {}",
+                                 kMinBandPeople, fmt::join(all, "; "));
   if (has_hand) text += ", by the short form of the Edinburgh Handedness Inventory";
-  paragraph.say(text + ".", has_hand ? std::vector{Source::veale} : std::vector<Source>{});
+  paragraph.add(text + ".", has_hand ? std::vector{Source::veale} : std::vector<Source>{});
 }
 
 std::string groups_sentence(const StudyHead& head, const Outcomes& outcomes) {
@@ -135,26 +130,26 @@ std::string size_sentence(const study::Registration& registration) {
 
 std::string exclusions_sentence(const study::Registration& registration) {
   if (registration.analysis && registration.analysis->exclusion_rules) {
-    return fmt::format("The rules for exclusion that were fixed beforehand were: {}.",
+    return fmt::format("The rules for exclusion were fixed in advance: {}.",
                        study::rules_words(*registration.analysis->exclusion_rules));
   }
   if (registration.exclusions.empty()) return {};
-  return fmt::format("The rule for exclusions that was fixed beforehand was: {}",
+  return fmt::format("The rule for exclusion was fixed in advance: {}",
                      quoted_statement(registration.exclusions));
 }
 
 }  // namespace
 
-Cited participants_paragraph(const StudyHead& head, const Outcomes& outcomes) {
+CitedText participants_paragraph(const StudyHead& head, const Outcomes& outcomes) {
   Paragraph paragraph;
-  paragraph.say(number_sentence(head));
-  paragraph.say(simulated_sentence(head));
-  paragraph.say(dates_sentence(head));
-  say_demographics(head, paragraph);
-  paragraph.say(groups_sentence(head, outcomes));
-  paragraph.say(head.simulated ? std::string() : ethics_sentence(outcomes.design.session));
-  paragraph.say(size_sentence(head.registration));
-  paragraph.say(exclusions_sentence(head.registration));
+  paragraph.add(number_sentence(head));
+  paragraph.add(simulated_sentence(head));
+  paragraph.add(dates_sentence(head));
+  add_demographics(head, paragraph);
+  paragraph.add(groups_sentence(head, outcomes));
+  paragraph.add(head.simulated ? std::string() : ethics_sentence(outcomes.design.session));
+  paragraph.add(size_sentence(head.registration));
+  paragraph.add(exclusions_sentence(head.registration));
   return paragraph.cited();
 }
 

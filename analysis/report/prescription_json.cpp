@@ -1,4 +1,4 @@
-/// \file Reads what a study prescribes from its configuration in clear.
+/// \file Reads the prescription from a study's public configuration.
 #include "analysis/outcomes/collection.hpp"
 #include "core/errors.hpp"
 #include "study/languages.hpp"
@@ -13,7 +13,6 @@ namespace {
 
 using nlohmann::json;
 
-/// Reads the section "session". A study without it uses the defaults.
 void read_session(const json& session, Prescription& prescription) {
   prescription.sight = session.at("sight").get<std::string>();
   prescription.masking_wanted = session.at("masking").at("wanted").get<bool>();
@@ -21,13 +20,12 @@ void read_session(const json& session, Prescription& prescription) {
   prescription.draft = study::draft_notice(session.value("language", "en"));
 }
 
-/// The number of orders of methods. Methods have an order only if several are presented, each in
-/// its own block.
+/// The number of orders of methods; 1 unless several methods are presented in separate blocks.
 int method_orders_of(const json& configuration) {
   const study::Protocol* protocol = study::find_protocol(configuration.value("protocol", ""));
-  const bool several = protocol != nullptr && protocol->all_methods;
+  const bool has_several_methods = protocol != nullptr && protocol->all_methods;
   const json trials = configuration.at("trials");
-  if (!several || configuration.contains("intervals") ||
+  if (!has_several_methods || configuration.contains("intervals") ||
       trials.value("blocks", "by-method") != "by-method")
     return 1;
   return study::williams_rows(static_cast<int>(configuration.at("methods").size()));
@@ -43,11 +41,11 @@ study::ValidityRule validity_rule_of(const json& rule) {
 }
 
 Prescription prescription_of(const json& configuration) {
-  const study::MaskingPlan usual;
+  const study::MaskingPlan default_masking;
   Prescription prescription;
   prescription.sight = "curtain";
-  prescription.masking_wanted = usual.wanted;
-  prescription.masking_dbfs = usual.level_dbfs;
+  prescription.masking_wanted = default_masking.wanted;
+  prescription.masking_dbfs = default_masking.level_dbfs;
   const json& trials = configuration.at("trials");
   prescription.explore_limit_s = trials.at("explore_limit_s").get<double>();
   prescription.on_timeout = trials.at("on_timeout").get<std::string>();
@@ -64,8 +62,9 @@ Prescription prescription_of(const json& configuration) {
     prescription.visits = configuration["visits"].at("count").get<int>();
     prescription.visits_needed = configuration["visits"].at("needed").get<int>();
     prescription.min_days = configuration["visits"].value("least_days", 0.0);
-    if (const json most = configuration["visits"].value("most_days", json()); most.is_number()) {
-      prescription.max_days = most.get<double>();
+    if (const json max_days = configuration["visits"].value("most_days", json());
+        max_days.is_number()) {
+      prescription.max_days = max_days.get<double>();
     }
   }
   if (configuration.contains("groups")) {
@@ -81,8 +80,8 @@ Prescription prescription_from_json(const std::string& configuration) {
     return prescription_of(json::parse(configuration));
   } catch (const json::exception&) {
     throw StoreError(
-        "the study's configuration in the database is not what this program writes; run "
-        "`touchtrial verify`, and restore a backup if it fails");
+        "the study's configuration in the database is not readable; run `touchtrial verify`, and "
+        "restore a backup if it fails");
   }
 }
 

@@ -14,15 +14,14 @@
 namespace touchtrial::analysis {
 namespace {
 
-std::map<std::string_view, const ProtocolAnalysis*>& known_analyses() {
+std::map<std::string_view, const ProtocolAnalysis*>& registered_analyses() {
   static std::map<std::string_view, const ProtocolAnalysis*> all;
   return all;
 }
 
-/// Removes from a report's head all but the registered estimate, its interval and test, and what is
-/// in clear.
-void keep_question(StudyHead& head, Collection in_clear) {
-  head.collection = std::move(in_clear);
+/// Keeps only the registered estimate, its interval and test, and public data.
+void keep_registered_answer(StudyHead& head, Collection public_data) {
+  head.collection = std::move(public_data);
   head.warnings.clear();
   head.explorations.clear();
   head.prevalence.reset();
@@ -36,18 +35,18 @@ void keep_question(StudyHead& head, Collection in_clear) {
   }
 }
 
-class QuestionAlone final : public Results {
+class RegisteredAnswer final : public Results {
  public:
-  QuestionAlone(StudyHead head, const record::StudyStore& store)
+  RegisteredAnswer(StudyHead head, const record::StudyStore& store)
       : head_(std::move(head)), quality_(make_quality(store)) {
-    keep_question(head_, load_collection(store));
+    keep_registered_answer(head_, load_collection(store));
   }
 
   const StudyHead& head() const override { return head_; }
   std::string json() const override { return framed_json(head_, "{}"); }
   Document document(const Provenance& provenance, const Pictures&) const override {
     std::vector<Section> quality = quality_sections(quality_);
-    std::erase_if(quality, [](const Section& one) { return one.id == "participants"; });
+    std::erase_if(quality, [](const Section& section) { return section.id == "participants"; });
     return framed_document(head_, {"result", "Result", {}}, std::move(quality), provenance);
   }
 
@@ -56,10 +55,9 @@ class QuestionAlone final : public Results {
   QualityReport quality_;
 };
 
-/// Results whose page ends with the methods.
-class ResultsAndMethods final : public Results {
+class ResultsWithMethods final : public Results {
  public:
-  ResultsAndMethods(std::unique_ptr<const Results> results, Section methods)
+  ResultsWithMethods(std::unique_ptr<const Results> results, Section methods)
       : results_(std::move(results)), methods_(std::move(methods)) {}
 
   const StudyHead& head() const override { return results_->head(); }
@@ -80,18 +78,27 @@ class ResultsAndMethods final : public Results {
 
 }  // namespace
 
-std::unique_ptr<const Results> question_alone(const Results& results,
-                                              const record::StudyStore& store) {
-  return std::make_unique<QuestionAlone>(results.head(), store);
+std::unique_ptr<const Results> registered_answer_only(const Results& results,
+                                                      const record::StudyStore& store) {
+  return std::make_unique<RegisteredAnswer>(results.head(), store);
 }
 
 std::unique_ptr<const Results> with_methods(std::unique_ptr<const Results> results,
-                                            const Outcomes& outcomes, const ReportOptions& wishes,
+                                            const Outcomes& outcomes, const ReportOptions& options,
                                             const ProtocolMethods& protocol) {
-  if (!wishes.page || wishes.source == nullptr) return results;
-  const RecordedStudy recorded = recorded_study(wishes.source->store, wishes.source->key);
+  if (!options.page || options.source == nullptr) return results;
+  const RecordedStudy recorded = recorded_study(options.source->store, options.source->key);
   Section methods = methods_section(results->head(), outcomes, recorded, protocol);
-  return std::make_unique<ResultsAndMethods>(std::move(results), std::move(methods));
+  return std::make_unique<ResultsWithMethods>(std::move(results), std::move(methods));
+}
+
+void refuse_exploration_options(const ReportOptions& options, const std::string& reason) {
+  if (!options.trial.empty()) throw UsageError("--trial: " + reason + "; omit the option");
+  if (options.traces == ReportOptions::Traces::yes) {
+    throw UsageError(
+        "--cues yes: ideal observers exist only for studies in which participants choose between "
+        "textures; omit the option");
+  }
 }
 
 std::vector<Figure> Results::figures(const std::string&) const {
@@ -113,7 +120,7 @@ std::optional<RModel> ProtocolAnalysis::r_model(const Outcomes&) const {
 std::string r_script_of(const RModel& model, const Outcomes& outcomes) {
   return fmt::format(
       "# {1} of the study {2}{3}. Run: Rscript {0}.R\n"
-      "# Needs lme4; reads {0}.csv beside this file. What it means: {0}.md.\n{4}",
+      "# Needs lme4; reads {0}.csv in the same folder. Meaning: {0}.md.\n{4}",
       model.name, model.title, one_line(outcomes.study), outcomes.simulated ? " (SIMULATED)" : "",
       model.script);
 }
@@ -137,12 +144,12 @@ std::vector<std::filesystem::path> export_r_model(const record::StudyStore& stor
 }
 
 void add_analysis(std::string_view protocol, const ProtocolAnalysis& analysis) {
-  known_analyses()[protocol] = &analysis;
+  registered_analyses()[protocol] = &analysis;
 }
 
 const ProtocolAnalysis& analysis_of(const study::Study& study) {
-  const auto found = known_analyses().find(study.protocol->name);
-  if (found != known_analyses().end()) return *found->second;
+  const auto found = registered_analyses().find(study.protocol->name);
+  if (found != registered_analyses().end()) return *found->second;
   throw StudyError(one_line("study " + study.name + ": the protocol " + study.protocol_name() +
                             " has no report; export the trials instead"));
 }

@@ -1,5 +1,5 @@
 /// \file The interface of a protocol's analysis, which turns outcomes into text, JSON, a page,
-/// figures and tables. Commands and exports know the analysis of a protocol only by this interface.
+/// figures and tables. Commands and exports use a protocol's analysis only through this interface.
 #pragma once
 
 #include "analysis/exports/data_table.hpp"
@@ -19,22 +19,22 @@
 
 namespace touchtrial::analysis {
 
-/// The source from which the traces of trials are read.
+/// The database and the key from which trials' traces are read.
 struct TraceSource {
   const record::StudyStore& store;
   const study::StudyKey& key;
 };
 
-/// What a user wants in a report besides its tables.
+/// What a report contains in addition to its tables.
 struct ReportOptions {
   enum class Traces { if_few, yes, no };
 
   const TraceSource* source = nullptr;  ///< null: sections that need traces are omitted
   bool page = false;                    ///< make a page with figures, not only terminal text
   Traces traces = Traces::if_few;       ///< read traces for sections that need all, such as cues
-  std::string trial{};            ///< an exploration to draw, as "P01:3"; empty: none is named
+  std::string trial{};                  ///< an exploration to draw, such as "P01:3"; may be empty
   bool published_values = false;  ///< show the values of the source publication for comparison
-  std::function<void(int done, int of)> progress{};  ///< called while traces are read
+  std::function<void(int done, int total)> progress{};  ///< called while traces are read
 };
 
 /// A study's results. Immutable and thread-safe.
@@ -42,9 +42,9 @@ class Results {
  public:
   virtual ~Results() = default;
 
-  /// The part that all reports have in common.
+  /// The common part of all reports.
   [[nodiscard]] virtual const StudyHead& head() const = 0;
-  /// One JSON object, indented, ending with a line feed; numbers that do not exist are null.
+  /// One JSON object, indented, ending with a line feed; missing numbers are null.
   [[nodiscard]] virtual std::string json() const = 0;
   /// The figures to draw, in the order of the document.
   /// \param stamp  further_stamp of the study
@@ -55,28 +55,32 @@ class Results {
                                           const Pictures& pictures) const = 0;
 };
 
-/// Results whose page ends with the study's methods, if a page is requested and its source known.
-/// \param outcomes  from which the results were made
+/// Adds the study's methods to the end of the page, if `options` request a page and have a source.
+/// \param outcomes  of the results
 [[nodiscard]] std::unique_ptr<const Results> with_methods(std::unique_ptr<const Results> results,
                                                           const Outcomes& outcomes,
-                                                          const ReportOptions& wishes,
+                                                          const ReportOptions& options,
                                                           const ProtocolMethods& protocol);
 
-/// The answer to the registered question and how the study was collected: what a registered look
-/// shows of results, whatever the protocol.
-/// \param store  has what is in clear, for the quality of the data
-[[nodiscard]] std::unique_ptr<const Results> question_alone(const Results& results,
-                                                            const record::StudyStore& store);
+/// Refuses drawings of explorations and ideal observers.
+/// \param reason  why explorations are not drawn
+/// \throws UsageError if an option requests one of them
+void refuse_exploration_options(const ReportOptions& options, const std::string& reason);
+
+/// What a registered look shows, for any protocol: the answer to the registered question, and data
+/// collection.
+/// \param store  has the public data on collection
+[[nodiscard]] std::unique_ptr<const Results> registered_answer_only(
+    const Results& results, const record::StudyStore& store);
 
 /// A table of results in its own file.
 struct ResultTable {
-  std::string file;  ///< the file's name
+  std::string file;  ///< name
   DataTable table;
-  bool has_words = false;  ///< personal data: for its reader alone
+  bool has_free_text = false;  ///< personal data: only the owner may read the file
 };
 
-/// A model that R fits to a study's trials, and the content of its files, whose first lines the
-/// frame adds.
+/// A model that R fits to a study's trials: the content of its files, without their first lines.
 struct RModel {
   std::string title;   ///< "Mixed model"
   std::string name;    ///< of the files, without extension: "mixed_model"
@@ -85,7 +89,7 @@ struct RModel {
   std::string notes;   ///< NAME.md
 };
 
-/// The whole text of NAME.R.
+/// The complete text of NAME.R.
 [[nodiscard]] std::string r_script_of(const RModel& model, const Outcomes& outcomes);
 
 /// The part of a protocol that analyses outcomes. Stateless and thread-safe.
@@ -94,19 +98,19 @@ class ProtocolAnalysis {
   virtual ~ProtocolAnalysis() = default;
 
   /// \param outcomes  unblinded; need not outlive the results
-  /// \throws UsageError, naming the wish, if the protocol cannot fulfil one
+  /// \throws UsageError, naming the option, if the protocol does not support one
   /// \throws VerificationError if a trace does not open
   [[nodiscard]] virtual std::unique_ptr<const Results> results(
-      const Outcomes& outcomes, const ReportOptions& wishes) const = 0;
-  /// Tables that `export --format csv` writes in addition to those of every study.
+      const Outcomes& outcomes, const ReportOptions& options) const = 0;
+  /// Tables that `export --format csv` writes in addition to the tables of every study.
   [[nodiscard]] virtual std::vector<ResultTable> tables(const Outcomes& outcomes) const;
-  /// Columns that tables of trials have in addition, for instance what an adaptive order chose.
-  /// Their names are known to meaning_of (exports/dataset.hpp).
+  /// Additional columns of trial tables, such as the choices of an adaptive order. meaning_of
+  /// (exports/column_meanings.hpp) must contain their names.
   /// \param outcomes  must outlive the columns
   [[nodiscard]] virtual std::vector<TrialColumn> trial_columns(const Outcomes& outcomes) const;
   /// The model of `export --format r`.
   /// \return nothing if the protocol has none
-  /// \throws UsageError if this study can have none
+  /// \throws UsageError if the study's design does not permit it
   [[nodiscard]] virtual std::optional<RModel> r_model(const Outcomes& outcomes) const;
 };
 
@@ -119,7 +123,7 @@ std::vector<std::filesystem::path> export_r_model(const record::StudyStore& stor
                                                   const std::filesystem::path& folder);
 
 /// Registers a protocol's analysis. Call before the first report. Not thread-safe.
-/// \param protocol  the protocol's name; both arguments must outlive the program's use of them
+/// \param protocol  its name; both arguments must outlive all reports
 void add_analysis(std::string_view protocol, const ProtocolAnalysis& analysis);
 
 /// \throws StudyError if the study's protocol has no analysis

@@ -7,8 +7,12 @@
 namespace touchtrial::analysis {
 
 std::string p_value(double p) {
-  // Rounds halves up, so that 0.03125, a smallest possible p, is not shown as less.
+  // Rounds halves up, so that 0.03125 is not shown as a smaller p.
   return fmt::format("{:.3g}", p * (1.0 + 1e-9));
+}
+
+void add_people(int people, const char* words, std::vector<std::string>& all) {
+  if (people > 0) all.push_back(fmt::format("{} {}", people, words));
 }
 
 std::string heading(const std::string& title, bool simulated) {
@@ -17,13 +21,13 @@ std::string heading(const std::string& title, bool simulated) {
 
 namespace {
 
-std::string words_of_device(const std::string& recorded) {
-  constexpr std::string_view kHeld = "simulated ";
+std::string single_device_words(const std::string& recorded) {
+  constexpr std::string_view kSimulated = "simulated ";
   if (recorded == "simulated") return "ideal device (no such device is sold)";
   if (recorded == "given-function") return "no device (answers follow a given function)";
   if (recorded == kStatedPeople) return "no device (people's accuracies are stated)";
-  return recorded.starts_with(kHeld) ? "modelled device " + recorded.substr(kHeld.size())
-                                     : recorded;
+  return recorded.starts_with(kSimulated) ? "modelled device " + recorded.substr(kSimulated.size())
+                                          : recorded;
 }
 
 }  // namespace
@@ -31,7 +35,7 @@ std::string words_of_device(const std::string& recorded) {
 std::string device_words(const std::set<std::string>& recorded) {
   std::string words;
   for (const std::string& device : recorded) {
-    words += (words.empty() ? "" : "; ") + words_of_device(device);
+    words += (words.empty() ? "" : "; ") + single_device_words(device);
   }
   return words;
 }

@@ -1,10 +1,11 @@
-/// \file Words about simulated numbers and their device, and p values with all their digits.
+/// \file Words for simulated numbers and their device, and p values with three digits.
 #pragma once
 
 #include "core/text.hpp"
 
 #include <set>
 #include <string>
+#include <vector>
 
 namespace touchtrial::analysis {
 
@@ -13,23 +14,22 @@ namespace touchtrial::analysis {
 
 using touchtrial::counted;
 
+/// Adds "3 excluded" if there are such people.
+void add_people(int people, const char* words, std::vector<std::string>& all);
+
 /// A table's title after an empty line, with a stamp if its numbers are simulated.
 [[nodiscard]] std::string heading(const std::string& title, bool simulated);
-/// The device that simulated numbers hold for, for people: "modelled device touch", or "ideal
-/// device (no such device is sold)". Several are joined.
-/// \param recorded  as sessions record their device (record::SessionRow), or kStatedPeople
-/// \return empty for none
+/// The simulated devices: "modelled device touch", or "ideal device (no such device is sold)".
+/// \param recorded  record::SessionRow::device, or kStatedPeople; may be empty
 [[nodiscard]] std::string device_words(const std::set<std::string>& recorded);
-/// In place of a recorded device if people's accuracies are stated.
+/// Replaces a recorded device if people's accuracies are stated.
 inline constexpr const char* kStatedPeople = "stated";
-/// What is said first of simulated numbers: "simulated on: modelled device touch"; empty for none.
+/// "simulated on: modelled device touch", or empty
 /// \param device  device_words
 [[nodiscard]] std::string simulated_on(const std::string& device);
-/// The same as a line.
 [[nodiscard]] std::string simulated_on_line(const std::string& device);
 
-/// The line that begins and ends every text with simulated numbers; empty if they are not
-/// simulated.
+/// The first and last line of texts with simulated numbers; empty if they are not simulated.
 [[nodiscard]] std::string simulated_line(bool simulated);
 
 }  // namespace touchtrial::analysis

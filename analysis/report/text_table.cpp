@@ -12,36 +12,31 @@ namespace {
 constexpr std::string_view kIndent = "  ";
 constexpr std::string_view kGap = "  ";
 
-bool continues_character(char c) {
+bool is_continuation_byte(char c) {
   return (static_cast<unsigned char>(c) & 0xc0U) == 0x80U;
 }
 
-std::string left(std::string_view text, std::size_t width) {
+std::string left_aligned(std::string_view text, std::size_t width) {
   return fmt::format("{:<{}}", text, width);
 }
 
-std::string right(std::string_view text, std::size_t width) {
+std::string right_aligned(std::string_view text, std::size_t width) {
   return fmt::format("{:>{}}", text, width);
-}
-
-std::string without_trailing_spaces(std::string line) {
-  line.erase(line.find_last_not_of(' ') + 1);
-  return line;
 }
 
 }  // namespace
 
 std::size_t display_width(std::string_view text) {
   // Measures a text by padding it with fmt, so that measuring and padding agree on every character.
-  const std::size_t wide = 2 * text.size() + 1;
-  return wide - (left(text, wide).size() - text.size());
+  const std::size_t padded_width = 2 * text.size() + 1;
+  return padded_width - (left_aligned(text, padded_width).size() - text.size());
 }
 
 std::string fitted(std::string_view text, std::size_t width) {
   if (display_width(text) <= width) return std::string(text);
   while (!text.empty() && display_width(text) + 1 > width) {
     std::size_t end = text.size() - 1;
-    while (end > 0 && continues_character(text[end])) --end;
+    while (end > 0 && is_continuation_byte(text[end])) --end;
     text = text.substr(0, end);
   }
   return std::string(text) + "…";
@@ -49,17 +44,17 @@ std::string fitted(std::string_view text, std::size_t width) {
 
 std::vector<std::string> lines_of(std::string_view paragraph, std::size_t width) {
   std::vector<std::string> lines(1);
-  bool fresh = true;
+  bool is_empty = true;
   while (!paragraph.empty()) {
     const std::size_t space = std::min(paragraph.find(' '), paragraph.size());
     const std::string_view word = paragraph.substr(0, space);
-    if (!fresh && display_width(lines.back()) + 1 + display_width(word) > width) {
+    if (!is_empty && display_width(lines.back()) + 1 + display_width(word) > width) {
       lines.emplace_back();
-      fresh = true;
+      is_empty = true;
     }
-    if (!fresh) lines.back() += ' ';
+    if (!is_empty) lines.back() += ' ';
     lines.back() += word;
-    fresh = false;
+    is_empty = false;
     paragraph.remove_prefix(std::min(space + 1, paragraph.size()));
   }
   return lines;
@@ -77,8 +72,7 @@ std::string wrapped(std::string_view first, std::string_view paragraph, std::siz
 TextTable::TextTable(std::vector<std::string> header, std::set<std::size_t> left)
     : left_(std::move(left)) {
   if (header.empty()) throw std::invalid_argument("a table needs a column");
-  rows_.push_back({});
-  rows_.front().swap(header);
+  rows_.push_back(std::move(header));
   for (std::string& cell : rows_.front()) cell = fitted(cell, kCellWidth);
 }
 
@@ -105,18 +99,20 @@ std::string TextTable::text(std::size_t width) const {
   std::string all;
   std::size_t begin = 1;
   do {
-    std::size_t used = kIndent.size() + widths[0];
+    std::size_t used_width = kIndent.size() + widths[0];
     std::size_t end = begin;
-    while (end < widths.size() && (end == begin || used + kGap.size() + widths[end] <= width)) {
-      used += kGap.size() + widths[end++];
+    while (end < widths.size() &&
+           (end == begin || used_width + kGap.size() + widths[end] <= width)) {
+      used_width += kGap.size() + widths[end++];
     }
     for (const auto& row : rows_) {
-      std::string line = std::string(kIndent) + left(row[0], widths[0]);
+      std::string line = std::string(kIndent) + left_aligned(row[0], widths[0]);
       for (std::size_t i = begin; i < end; ++i) {
         line += kGap;
-        line += left_.contains(i) ? left(row[i], widths[i]) : right(row[i], widths[i]);
+        line +=
+            left_.contains(i) ? left_aligned(row[i], widths[i]) : right_aligned(row[i], widths[i]);
       }
-      line = without_trailing_spaces(std::move(line));
+      line.erase(line.find_last_not_of(' ') + 1);
       if (!line.empty()) all += line + '\n';
     }
     begin = end;

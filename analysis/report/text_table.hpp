@@ -14,14 +14,14 @@ inline constexpr std::size_t kTextWidth = 100;
 /// Maximum width of a table's cell, columns.
 inline constexpr std::size_t kCellWidth = 24;
 
-/// The number of columns of a UTF-8 text on a terminal. East Asian wide characters take two.
+/// The columns of a UTF-8 text on a terminal. East Asian wide characters take two.
 [[nodiscard]] std::size_t display_width(std::string_view text);
 
-/// The text, cut between characters to at most `width` columns. An ellipsis marks a cut.
+/// The text, cut between characters to at most `width` columns, with an ellipsis if cut.
 [[nodiscard]] std::string fitted(std::string_view text, std::size_t width);
 
-/// A paragraph broken at spaces into lines of at most `width` columns; a longer word has a line of
-/// its own.
+/// A paragraph broken at spaces into lines of at most `width` columns; a longer word gets its
+/// own line.
 /// \return at least one line
 [[nodiscard]] std::vector<std::string> lines_of(std::string_view paragraph, std::size_t width);
 
@@ -36,12 +36,11 @@ class TextTable {
   /// \param left  the left-aligned columns; the others are right-aligned
   explicit TextTable(std::vector<std::string> header, std::set<std::size_t> left = {0});
 
-  /// Adds a row.
   /// \throws std::invalid_argument if the number of cells differs from the header's
   void add(std::vector<std::string> cells);
 
   /// All rows, indented by two columns, each ending with a line feed. Columns that do not fit
-  /// follow below, with the first column repeated. Lines without any text are left out.
+  /// follow below, with the first column repeated. Empty lines are omitted.
   [[nodiscard]] std::string text(std::size_t width = kTextWidth) const;
 
  private:

@@ -23,38 +23,37 @@
 namespace touchtrial::analysis {
 namespace {
 
-constexpr const char* kUnblinds =
+constexpr const char* kUnblindingWarning =
     "This sheet unblinds: it shows which code is which stimulus. Keep it with the key, away from "
     "participants and experimenters.";
 constexpr int kPictureSide_px = 240;
 constexpr int kPatchSide_px = 16;
-/// Pixels of style sheets: four rows fill a printed page.
+/// In CSS pixels: four rows fill a printed page.
 constexpr int kTileSide_px = 200;
-constexpr std::size_t kStimuliOfPicture = 4;
+constexpr std::size_t kStimuliPerPicture = 4;
 
-std::string three_digits(double number) {
+std::string to_3_digits(double number) {
   return fmt::format("{:.3g}", number);
 }
 
-std::string per_cent(double share) {
+std::string percent_text(double share) {
   return fmt::format("{:.1f}", 100 * share);
 }
 
-/// The gains of the study's model: of height, or of forces.
-std::string words_of(const engine::Gains& gains) {
-  if (gains.height_mm > 0.0) return three_digits(1000 * gains.height_mm) + " um of height";
-  return three_digits(1000 * gains.tangential_n) + " / " + three_digits(1000 * gains.normal_n) +
+/// The height gain or the force gains, depending on the study's model.
+std::string gains_text(const engine::Gains& gains) {
+  if (gains.height_mm > 0.0) return to_3_digits(1000 * gains.height_mm) + " um of height";
+  return to_3_digits(1000 * gains.tangential_n) + " / " + to_3_digits(1000 * gains.normal_n) +
          " mN";
 }
 
-/// The stimuli of a section.
 struct Group {
   std::string id;
   std::string title;
   std::vector<study::KeyedStimulus> stimuli;
 };
 
-/// The groups of each method, then of practice.
+/// One group per method, then practice; groups without stimuli are left out.
 std::vector<Group> groups_of(const study::StudyKey& key) {
   std::vector<Group> groups;
   for (const study::StudyMethod& method : key.study.methods) {
@@ -85,7 +84,7 @@ Table empty_table(std::size_t group) {
   return table;
 }
 
-GreyImage fitted(const GreyImage& image) {
+GreyImage resized_to_picture(const GreyImage& image) {
   const double scale =
       static_cast<double>(kPictureSide_px) / std::max(image.height(), image.width());
   const auto side = [scale](int length) {
@@ -101,18 +100,18 @@ GreyImage enhanced_picture(Plane<float> texture) {
   return engine::texture_picture(texture);
 }
 
-/// Adds stimuli of one pack to the sheet.
-class Stimuli {
+class SheetRows {
  public:
-  Stimuli(const study::StudyKey& key, const engine::Pack& pack) : key_(key), pack_(pack) {}
+  SheetRows(const study::StudyKey& key, const engine::Pack& pack) : key_(key), pack_(pack) {}
 
   void add(const study::KeyedStimulus& keyed, Table& table, Tiles& tiles) {
     const study::StimulusIndex& stimulus = keyed.stimulus;
-    const study::StudyClass& of = key_.study.class_at(stimulus.class_index);
+    const study::StudyClass& stimulus_class = key_.study.class_at(stimulus.class_index);
     const auto exemplar = static_cast<std::size_t>(stimulus.exemplar);
-    const auto [picture, notes] = engine::read_picture(key_.study.folder / of.images[exemplar]);
-    const GreyImage image = felt_part(picture, stimulus);
-    const engine::PackEntry& entry = checked_entry(keyed, image, of.images[exemplar]);
+    const auto [picture, notes] =
+        engine::read_picture(key_.study.folder / stimulus_class.images[exemplar]);
+    const GreyImage image = rendered_part(picture, stimulus);
+    const engine::PackEntry& entry = checked_entry(keyed, image, stimulus_class.images[exemplar]);
     const engine::MappedField field = pack_.map(keyed.code);
     Plane<float> plane =
         engine::extract_texture<float>(image, study::method_of(key_.study, stimulus)).texture;
@@ -123,23 +122,25 @@ class Stimuli {
         engine::field_statistics(field.view(), entry.gains, key_.study.rendering);
     const PlaneGeometry& geometry = field.view().geometry;
     for (const std::string& remark : engine::remarks_on(notes)) {
-      remarks_.insert(one_line(of.images[exemplar].string() + ": " + remark));
+      remarks_.insert(one_line(stimulus_class.images[exemplar].string() + ": " + remark));
     }
-    const std::string title =
-        of.images.size() > 1 ? fmt::format("{}, {} of {}", of.label, exemplar + 1, of.images.size())
-                             : of.label;
+    const std::string title = stimulus_class.images.size() > 1
+                                  ? fmt::format("{}, {} of {}", stimulus_class.label, exemplar + 1,
+                                                stimulus_class.images.size())
+                                  : stimulus_class.label;
     table.rows.push_back(
-        {title, keyed.code, of.images[exemplar].filename().string(),
+        {title, keyed.code, stimulus_class.images[exemplar].filename().string(),
          fmt::format("{:g} x {:g}", geometry.width_mm(), geometry.height_mm()),
-         three_digits(statistics.tangential_rms_n), three_digits(statistics.tangential_p999_n),
-         three_digits(statistics.normal_rms_n), three_digits(statistics.stiffness_p99_n_per_mm),
-         per_cent(1 - statistics.share_below_1_mm), per_cent(1 - statistics.share_above_250_hz[1]),
+         to_3_digits(statistics.tangential_rms_n), to_3_digits(statistics.tangential_p999_n),
+         to_3_digits(statistics.normal_rms_n), to_3_digits(statistics.stiffness_p99_n_per_mm),
+         percent_text(1 - statistics.share_below_1_mm),
+         percent_text(1 - statistics.share_above_250_hz[1]),
          fmt::format("{:.2f} / {:.2f}", engine::entropy(image), engine::entropy(texture)),
-         words_of(entry.gains), fmt::format("{:.2g}", patch.force_of_unit_arrow * n_per_grey)});
+         gains_text(entry.gains), fmt::format("{:.2g}", patch.force_of_unit_arrow * n_per_grey)});
     tiles.labels.push_back(title);
     tiles.cells.push_back(
-        {engine::png_bytes(fitted(picture)),
-         engine::png_bytes(fitted(enhanced_picture(std::move(plane)))),
+        {engine::png_bytes(resized_to_picture(picture)),
+         engine::png_bytes(resized_to_picture(enhanced_picture(std::move(plane)))),
          engine::png_bytes(engine::force_arrows(texture, force, patch, kPictureSide_px))});
   }
 
@@ -155,8 +156,8 @@ class Stimuli {
 
  private:
   /// The part of the picture that the field was made from.
-  [[nodiscard]] GreyImage felt_part(const GreyImage& picture,
-                                    const study::StimulusIndex& stimulus) const {
+  [[nodiscard]] GreyImage rendered_part(const GreyImage& picture,
+                                        const study::StimulusIndex& stimulus) const {
     if (!key_.study.is_practice_class(stimulus.class_index)) return picture;
     return study::middle_of(picture, study::plane_of(key_.study));
   }
@@ -191,22 +192,22 @@ Picture picture_of(const Tiles& tiles, std::size_t number) {
 }  // namespace
 
 Document make_stimulus_sheet(const study::StudyKey& key, const engine::Pack& pack,
-                             const std::function<void(int done, int of)>& progress) {
-  const std::size_t all = key.fields().size();
-  if (all > kMaxSheetStimuli) {
+                             const std::function<void(int finished, int total)>& progress) {
+  const std::size_t total = key.fields().size();
+  if (total > kMaxSheetStimuli) {
     throw UsageError(
         fmt::format("stimuli sheet: the study has {} stimuli, and a sheet holds at most {}; make a "
                     "sheet of a study with fewer images",
-                    all, kMaxSheetStimuli));
+                    total, kMaxSheetStimuli));
   }
-  Stimuli stimuli(key, pack);
+  SheetRows rows(key, pack);
   if (pack.manifest().study_id != key.study_id) {
-    stimuli.refuse("is unfinished, or belongs to another key");
+    rows.refuse("is unfinished, or belongs to another key");
   }
   Document sheet;
   sheet.title = "Stimuli of the study " + key.study.name;
   sheet.stamp = key.simulated ? "SIMULATED" : "";
-  sheet.banners = {kUnblinds};
+  sheet.banners = {kUnblindingWarning};
   sheet.numbered = false;
   sheet.about = "This sheet";
   sheet.header.entries = {{"protocol", key.study.protocol_name()}, {"seal", to_hex(key.seal)}};
@@ -215,20 +216,20 @@ Document make_stimulus_sheet(const study::StudyKey& key, const engine::Pack& pac
   std::size_t pictures = 0;
   for (const Group& group : groups_of(key)) {
     Table table = empty_table(sheet.sections.size());
-    std::vector<Block> drawn;
+    std::vector<Block> picture_blocks;
     Tiles tiles = no_tiles;
-    for (const study::KeyedStimulus& one : group.stimuli) {
-      stimuli.add(one, table, tiles);
-      if (progress) progress(static_cast<int>(++done), static_cast<int>(all));
-      if (tiles.cells.size() < kStimuliOfPicture && &one != &group.stimuli.back()) continue;
-      drawn.emplace_back(picture_of(std::exchange(tiles, no_tiles), ++pictures));
+    for (const study::KeyedStimulus& keyed : group.stimuli) {
+      rows.add(keyed, table, tiles);
+      if (progress) progress(static_cast<int>(++done), static_cast<int>(total));
+      if (tiles.cells.size() < kStimuliPerPicture && &keyed != &group.stimuli.back()) continue;
+      picture_blocks.emplace_back(picture_of(std::exchange(tiles, no_tiles), ++pictures));
     }
     Section& section = sheet.sections.emplace_back(Section{group.id, group.title, {}});
     section.blocks.emplace_back(std::move(table));
-    std::ranges::move(drawn, std::back_inserter(section.blocks));
+    std::ranges::move(picture_blocks, std::back_inserter(section.blocks));
   }
-  if (!stimuli.remarks().sentences.empty()) {
-    sheet.sections.front().blocks.emplace_back(stimuli.remarks());
+  if (!rows.remarks().sentences.empty()) {
+    sheet.sections.front().blocks.emplace_back(rows.remarks());
   }
   return sheet;
 }

@@ -18,21 +18,21 @@ namespace {
 using Integer = boost::multiprecision::cpp_int;
 using Polynomial = std::vector<Integer>;
 
-void require_fitting(const ClassCounts& counts, int trials) {
+void require_matching_counts(const ClassCounts& counts, int trials) {
   int presented = 0;
   int answered = 0;
-  for (const auto& [shown, chosen] : counts) {
-    if (shown < 0 || chosen < 0) throw std::invalid_argument("a count cannot be negative");
-    presented += shown;
-    answered += chosen;
+  for (const auto& [presentations, answers] : counts) {
+    if (presentations < 0 || answers < 0) throw std::invalid_argument("a count cannot be negative");
+    presented += presentations;
+    answered += answers;
   }
   if (presented != trials || answered > trials) {
     throw std::invalid_argument("presentations and answers do not fit the number of trials");
   }
 }
 
-/// The ways to place 0, 1, .. rooks that do not attack each other on a board of `rows` x `columns`.
-Polynomial rooks_on(int rows, int columns) {
+/// The numbers of ways to place 0, 1, .. non-attacking rooks on a board of `rows` x `columns`.
+Polynomial rook_polynomial(int rows, int columns) {
   Polynomial ways{1};
   for (int k = 0; k < std::min(rows, columns); ++k) {
     ways.push_back(ways.back() * (rows - k) * (columns - k) / (k + 1));
@@ -48,11 +48,11 @@ Polynomial product(const Polynomial& a, const Polynomial& b) {
   return result;
 }
 
-/// Turns the coefficients of a polynomial in t - 1 into those in t.
+/// Converts the coefficients of a polynomial in t - 1 to those in t.
 void shift_by_one(Polynomial& coefficients) {
   const std::size_t n = coefficients.size();
-  for (std::size_t from = 0; from + 1 < n; ++from) {
-    for (std::size_t k = n - 1; k > from; --k) coefficients[k - 1] -= coefficients[k];
+  for (std::size_t start = 0; start + 1 < n; ++start) {
+    for (std::size_t k = n - 1; k > start; --k) coefficients[k - 1] -= coefficients[k];
   }
 }
 
@@ -66,9 +66,9 @@ double ratio(const Integer& part, const Integer& whole) {
 
 /// Longer blocks would take too long to count.
 constexpr int kMaxCountedBlock = 400;
-/// Probabilities below this at a distribution's ends are left out.
+/// Probabilities below this are dropped at a distribution's ends.
 constexpr double kNegligible = 1e-290;
-/// The floor of p: more than the sum of all probabilities left out as negligible.
+/// The floor of p: more than the sum of all dropped probabilities.
 constexpr double kMinP = 1e-280;
 
 void require_in_range(int classes, int index) {
@@ -81,9 +81,9 @@ void require_valid(int classes, std::span<const AnsweredBlock> blocks) {
   for (const AnsweredBlock& block : blocks) {
     if (block.presented.size() != block.answered.size()) {
       throw std::invalid_argument(
-          "a chance test needs as many answers (or missing ones) as presentations");
+          "a chance test needs one answer (or a missing one) per presentation");
     }
-    for (const int shown : block.presented) require_in_range(classes, shown);
+    for (const int presented : block.presented) require_in_range(classes, presented);
     for (const std::optional<int>& answer : block.answered) {
       if (answer) require_in_range(classes, *answer);
     }
@@ -98,7 +98,7 @@ int matches(std::span<const int> presented, std::span<const std::optional<int>> 
 
 ClassCounts counts_of(int classes, const AnsweredBlock& block) {
   ClassCounts counts(static_cast<std::size_t>(classes));
-  for (const int shown : block.presented) ++counts[shown].first;
+  for (const int presented : block.presented) ++counts[presented].first;
   for (const std::optional<int>& answer : block.answered) {
     if (answer) ++counts[*answer].second;
   }
@@ -117,18 +117,18 @@ struct Distribution {
       for (std::size_t k = 0; k < probability.size(); ++k) sum[k + i] += probability[k] * other[i];
     }
     probability = std::move(sum);
-    const auto matters = [](double p) { return p > kNegligible; };
-    const auto begin = std::find_if(probability.begin(), probability.end(), matters);
-    const auto end = std::find_if(probability.rbegin(), probability.rend(), matters).base();
+    const auto is_relevant = [](double p) { return p > kNegligible; };
+    const auto begin = std::find_if(probability.begin(), probability.end(), is_relevant);
+    const auto end = std::find_if(probability.rbegin(), probability.rend(), is_relevant).base();
     first += static_cast<int>(begin - probability.begin());
     probability = std::vector<double>(begin, end);
   }
 
   [[nodiscard]] double at_least(int count) const {
-    const auto from = static_cast<std::size_t>(std::max(0, count - first));
-    if (from >= probability.size()) return 0.0;
-    // Adds the smallest first, so that none is lost to rounding.
-    return std::min(1.0, std::accumulate(probability.rbegin(), probability.rend() - from, 0.0));
+    const auto start = static_cast<std::size_t>(std::max(0, count - first));
+    if (start >= probability.size()) return 0.0;
+    // Adds the smallest first to limit rounding.
+    return std::min(1.0, std::accumulate(probability.rbegin(), probability.rend() - start, 0.0));
   }
 
   /// The largest upper tail that does not exceed the level.
@@ -142,29 +142,29 @@ struct Distribution {
   }
 };
 
-void count_orders(int classes, std::span<const AnsweredBlock> blocks, KnownMatches& known,
+void count_orders(int classes, std::span<const AnsweredBlock> blocks, MatchCache& cache,
                   ChanceTest& test) {
   Distribution right;
   for (const AnsweredBlock& block : blocks) {
     const auto trials = static_cast<int>(block.presented.size());
     const ClassCounts counts = counts_of(classes, block);
-    const auto [place, is_new] = known.try_emplace(counts);
-    if (is_new) place->second = match_probabilities(counts, trials);
-    right.add(place->second);
-    for (const auto& [shown, chosen] : counts) {
-      if (trials > 0) test.expected += static_cast<double>(shown) * chosen / trials;
+    const auto [entry, is_new] = cache.try_emplace(counts);
+    if (is_new) entry->second = match_probabilities(counts, trials);
+    right.add(entry->second);
+    for (const auto& [presentations, answers] : counts) {
+      if (trials > 0) test.expected += static_cast<double>(presentations) * answers / trials;
     }
   }
   test.p = right.at_least(test.correct);
   test.attainable = right.largest_tail(kSignificanceLevel);
 }
 
-/// The largest of above(0), above(1), .., above(most), which decrease, that does not exceed the
-/// level.
+/// The largest of above(0), above(1), .., above(max_count), which decrease, that does not exceed
+/// the level.
 template <typename Tail>
-double largest_tail_of(const Tail& above, int most) {
+double largest_tail_of(const Tail& above, int max_count) {
   int low = -1;  // its tail exceeds the level
-  int high = most;
+  int high = max_count;
   while (high - low > 1) {
     const int middle = low + (high - low) / 2;
     (above(middle) <= kSignificanceLevel ? high : low) = middle;
@@ -172,7 +172,7 @@ double largest_tail_of(const Tail& above, int most) {
   return above(high);
 }
 
-void take_binomial(int classes, std::span<const AnsweredBlock> blocks, ChanceTest& test) {
+void apply_binomial(int classes, std::span<const AnsweredBlock> blocks, ChanceTest& test) {
   int answered = 0;
   for (const AnsweredBlock& block : blocks) {
     answered += static_cast<int>(std::count_if(block.answered.begin(), block.answered.end(),
@@ -188,7 +188,7 @@ void take_binomial(int classes, std::span<const AnsweredBlock> blocks, ChanceTes
 }
 
 /// The largest of the p values (b + 1) / (deals + 1) that does not exceed the level.
-double max_share_below_level(const std::map<int, int>& counts, int deals) {
+double attainable_of_draws(const std::map<int, int>& counts, int deals) {
   int tail = 0;
   double share = 0.0;
   for (auto one = counts.rbegin(); one != counts.rend(); ++one) {
@@ -200,10 +200,10 @@ double max_share_below_level(const std::map<int, int>& counts, int deals) {
   return share;
 }
 
-void deal_anew(int classes, std::span<const AnsweredBlock> blocks, const RedrawnBlock& redraw,
-               int deals, ChanceTest& test) {
+void redraw_orders(int classes, std::span<const AnsweredBlock> blocks, const BlockRedraw& redraw,
+                   int deals, ChanceTest& test) {
   if (deals < 1) throw std::invalid_argument("a chance test needs at least one deal");
-  int as_many = 0;
+  int as_extreme = 0;
   double sum = 0.0;
   std::map<int, int> counts;
   for (int deal = 0; deal < deals; ++deal) {
@@ -213,22 +213,22 @@ void deal_anew(int classes, std::span<const AnsweredBlock> blocks, const Redrawn
       if (presented.size() != blocks[block].answered.size()) {
         throw std::invalid_argument("a redrawn block must keep its length");
       }
-      for (const int shown : presented) require_in_range(classes, shown);
+      for (const int class_index : presented) require_in_range(classes, class_index);
       right += matches(presented, blocks[block].answered);
     }
     sum += right;
     ++counts[right];
-    if (right >= test.correct) ++as_many;
+    if (right >= test.correct) ++as_extreme;
   }
-  test.attainable = max_share_below_level(counts, deals);
+  test.attainable = attainable_of_draws(counts, deals);
   test.expected = sum / deals;
-  test.p = p_of_draws(as_many, deals);
+  test.p = p_of_draws(as_extreme, deals);
   test.exact = false;
   test.deals = deals;
 }
 
 /// Shuffles a block's presentations. Reproducible if deals are requested in ascending order.
-RedrawnBlock any_order(std::span<const AnsweredBlock> blocks, RandomStream& random) {
+BlockRedraw shuffling_redraw(std::span<const AnsweredBlock> blocks, RandomStream& random) {
   return [blocks, &random](std::size_t block, int /*deal*/) {
     std::vector<int> presented = blocks[block].presented;
     shuffle(std::span(presented), random);
@@ -236,45 +236,47 @@ RedrawnBlock any_order(std::span<const AnsweredBlock> blocks, RandomStream& rand
   };
 }
 
-bool can_be_counted(std::span<const AnsweredBlock> blocks) {
+bool is_countable(std::span<const AnsweredBlock> blocks) {
   return std::all_of(blocks.begin(), blocks.end(), [](const AnsweredBlock& block) {
     return block.presented.size() <= std::size_t{kMaxCountedBlock};
   });
 }
 
-void test_permuted(int classes, std::span<const AnsweredBlock> blocks, int deals,
-                   KnownMatches& known, ChanceTest& test) {
-  if (can_be_counted(blocks)) return count_orders(classes, blocks, known, test);
+void test_permuted(int classes, std::span<const AnsweredBlock> blocks, int deals, MatchCache& cache,
+                   ChanceTest& test) {
+  if (is_countable(blocks)) return count_orders(classes, blocks, cache, test);
   RandomStream random(0, "chance test");
-  deal_anew(classes, blocks, any_order(blocks, random), deals, test);
+  redraw_orders(classes, blocks, shuffling_redraw(blocks, random), deals, test);
 }
 
 }  // namespace
 
 std::vector<double> match_probabilities(const ClassCounts& counts, int trials) {
-  require_fitting(counts, trials);
+  require_matching_counts(counts, trials);
   Polynomial ways{1};
-  for (const auto& [shown, chosen] : counts) ways = product(ways, rooks_on(shown, chosen));
-  // Orders that match in at least k chosen places: the others can be arranged in (trials - k)!
+  for (const auto& [presentations, answers] : counts)
+    ways = product(ways, rook_polynomial(presentations, answers));
+  // Orders that match in k given places: the other presentations can be arranged in (trials - k)!
   // ways.
-  Integer rest = 1;
-  for (int i = 2; i <= trials - static_cast<int>(ways.size()) + 1; ++i) rest *= i;
+  Integer arrangements = 1;
+  for (int i = 2; i <= trials - static_cast<int>(ways.size()) + 1; ++i) arrangements *= i;
   for (std::size_t k = ways.size(); k-- > 0;) {
-    ways[k] *= rest;
-    if (k > 0) rest *= trials - static_cast<int>(k) + 1;
+    ways[k] *= arrangements;
+    if (k > 0) arrangements *= trials - static_cast<int>(k) + 1;
   }
   shift_by_one(ways);
   std::vector<double> probabilities;
-  for (const Integer& orders : ways) probabilities.push_back(ratio(orders, rest));
+  for (const Integer& orders : ways) probabilities.push_back(ratio(orders, arrangements));
   return probabilities;
 }
 
 std::optional<ChanceTest> chance_test(int classes, std::span<const AnsweredBlock> blocks,
-                                      OrderRule order, const RedrawnBlock& redraw, int deals,
-                                      KnownMatches* known) {
+                                      OrderRule order, const BlockRedraw& redraw, int deals,
+                                      MatchCache* cache) {
   require_valid(classes, blocks);
   if (order == OrderRule::redrawn && !redraw) {
-    throw std::invalid_argument("a chance test of redrawn blocks needs the rule that redraws them");
+    throw std::invalid_argument(
+        "a chance test of redrawn blocks needs a function that redraws them");
   }
   ChanceTest test;
   for (const AnsweredBlock& block : blocks) {
@@ -284,15 +286,15 @@ std::optional<ChanceTest> chance_test(int classes, std::span<const AnsweredBlock
   if (test.trials == 0) return std::nullopt;
   switch (order) {
     case OrderRule::permuted: {
-      KnownMatches own;
-      test_permuted(classes, blocks, deals, known != nullptr ? *known : own, test);
+      MatchCache local_cache;
+      test_permuted(classes, blocks, deals, cache != nullptr ? *cache : local_cache, test);
       break;
     }
     case OrderRule::independent:
-      take_binomial(classes, blocks, test);
+      apply_binomial(classes, blocks, test);
       break;
     case OrderRule::redrawn:
-      deal_anew(classes, blocks, redraw, deals, test);
+      redraw_orders(classes, blocks, redraw, deals, test);
       break;
   }
   test.p = std::max(test.p, kMinP);

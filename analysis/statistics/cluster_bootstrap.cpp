@@ -24,7 +24,7 @@ void require_arguments(std::size_t participants, int draws, double level) {
   }
 }
 
-/// Draws indices below a bound, all equally likely, two from every 64 random bits: a study of a
+/// Draws equally likely indices below a bound. Every 64 random bits give two, because a study of a
 /// thousand participants needs ten million. Source: Lemire 2019, ACM Transactions on Modeling and
 /// Computer Simulation 29(1).
 class IndexDraws {
@@ -34,26 +34,26 @@ class IndexDraws {
         bound_(static_cast<std::uint32_t>(bound)),
         excess_((0U - bound_) % bound_) {}
 
-  /// Calls `take` with each index.
+  /// Calls `use_index` with each index.
   template <typename Take>
-  void each(std::size_t count, const Take& take) {
+  void each(std::size_t count, const Take& use_index) {
     while (count > 0) {
       if (!has_second_) word_ = random_.bits();
       const std::uint64_t first = (word_ & 0xffffffffU) * bound_;
       const std::uint64_t second = (word_ >> 32U) * bound_;
-      if (!has_second_ && is_taken(first)) {
-        take(first >> 32U);
+      if (!has_second_ && is_unbiased(first)) {
+        use_index(first >> 32U);
         --count;
       }
       has_second_ = count == 0;
-      if (has_second_ || !is_taken(second)) continue;
-      take(second >> 32U);
+      if (has_second_ || !is_unbiased(second)) continue;
+      use_index(second >> 32U);
       --count;
     }
   }
 
  private:
-  [[nodiscard]] bool is_taken(std::uint64_t product) const {
+  [[nodiscard]] bool is_unbiased(std::uint64_t product) const {
     return static_cast<std::uint32_t>(product) >= excess_;
   }
 
@@ -61,22 +61,21 @@ class IndexDraws {
   std::uint32_t bound_;
   std::uint32_t excess_;  // 2^32 mod bound
   std::uint64_t word_ = 0;
-  bool has_second_ = false;  ///< only the first half of the word has been used
+  bool has_second_ = false;  ///< the second half of the word is unused
 };
 
-/// The ((n + 1) share)-th of the n draws by size, interpolated where that is not a whole number:
-/// about this share of the statistic's distribution lies below it.
-/// \param draws  on return in another order
+/// The ((n + 1) share)-th smallest of n draws, interpolated if that is not a whole number. About
+/// this share of the statistic's distribution lies below it.
+/// \param draws  reordered on return
 double percentile(std::vector<double>& draws, double share) {
   const auto n = static_cast<double>(draws.size());
   const double place = std::clamp((n + 1.0) * share, 1.0, n) - 1.0;
-  const double below =
-      std::floor(place + 1e-9);  // 10,000 * 0.025 is the 250th in spite of rounding
-  const auto at = draws.begin() + static_cast<std::ptrdiff_t>(below);
-  std::nth_element(draws.begin(), at, draws.end());
-  if (at + 1 == draws.end()) return *at;
-  const double next = *std::min_element(at + 1, draws.end());
-  return *at + std::max(0.0, place - below) * (next - *at);
+  const double rank = std::floor(place + 1e-9);  // so that 10,000 * 0.025 gives the 250th
+  const auto position = draws.begin() + static_cast<std::ptrdiff_t>(rank);
+  std::nth_element(draws.begin(), position, draws.end());
+  if (position + 1 == draws.end()) return *position;
+  const double next = *std::min_element(position + 1, draws.end());
+  return *position + std::max(0.0, place - rank) * (next - *position);
 }
 
 /// The share of a statistic's distribution that the interval omits at each end.
@@ -104,12 +103,12 @@ std::optional<Interval> cluster_bootstrap(std::span<const Proportion> participan
   }
   if (participants.size() < 2) return std::nullopt;
   RandomStream random(0, "cluster bootstrap", index);
-  IndexDraws drawn(random, participants.size());
+  IndexDraws indices(random, participants.size());
   std::vector<double> shares(static_cast<std::size_t>(draws));
   for (double& share : shares) {
     std::int64_t n = 0;
     std::int64_t correct = 0;
-    drawn.each(participants.size(), [&](std::size_t i) {
+    indices.each(participants.size(), [&](std::size_t i) {
       n += participants[i].n;
       correct += participants[i].correct;
     });
@@ -124,28 +123,28 @@ std::optional<Interval> bootstrap_mean(std::span<const double> values, std::uint
   require_finite(values, "a bootstrap");
   if (values.size() < 2) return std::nullopt;
   RandomStream random(0, "bootstrap of a mean", index);
-  IndexDraws drawn(random, values.size());
+  IndexDraws indices(random, values.size());
   std::vector<double> means(static_cast<std::size_t>(draws));
   for (double& mean : means) {
     double sum = 0.0;
-    drawn.each(values.size(), [&](std::size_t i) { sum += values[i]; });
+    indices.each(values.size(), [&](std::size_t i) { sum += values[i]; });
     mean = sum / static_cast<double>(values.size());
   }
   return expanded_percentiles(std::move(means), values.size(), level);
 }
 
 std::optional<Interval> bootstrap_statistic(std::size_t participants,
-                                            const StatisticOfDrawn& statistic, std::uint64_t index,
-                                            int draws, double level) {
+                                            const ResampledStatistic& statistic,
+                                            std::uint64_t index, int draws, double level) {
   require_arguments(participants, draws, level);
   if (participants < 2) return std::nullopt;
   RandomStream random(0, "bootstrap of a statistic", index);
-  IndexDraws drawn(random, participants);
+  IndexDraws indices(random, participants);
   std::vector<std::size_t> people(participants);
   std::vector<double> values(static_cast<std::size_t>(draws));
   for (double& value : values) {
     auto next = people.begin();
-    drawn.each(participants, [&](std::size_t i) { *next++ = i; });
+    indices.each(participants, [&](std::size_t i) { *next++ = i; });
     value = statistic(people);
   }
   require_finite(values, "a bootstrap");
@@ -162,11 +161,11 @@ std::optional<Interval> bootstrap_ratio(std::span<const Ratio> participants, std
   }
   if (participants.size() < 2) return std::nullopt;
   RandomStream random(0, "bootstrap of a ratio", index);
-  IndexDraws drawn(random, participants.size());
+  IndexDraws indices(random, participants.size());
   std::vector<double> logs(static_cast<std::size_t>(draws));
   for (double& one : logs) {
     Ratio sum;
-    drawn.each(participants.size(), [&](std::size_t i) {
+    indices.each(participants.size(), [&](std::size_t i) {
       sum.above += participants[i].above;
       sum.below += participants[i].below;
     });
@@ -178,22 +177,22 @@ std::optional<Interval> bootstrap_ratio(std::span<const Ratio> participants, std
   return Interval{std::exp(ends.low), std::exp(ends.high)};
 }
 
-JackknifeEstimate jackknife(double all, std::span<const double> without, const Interval& range,
-                            double level) {
+JackknifeEstimate jackknife(double full_sample, std::span<const double> leave_one_out,
+                            const Interval& range, double level) {
   require_level(level);
-  require_finite(without, "a jackknife");
-  require_finite(std::span(&all, 1), "a jackknife");
-  if (without.size() < 2)
+  require_finite(leave_one_out, "a jackknife");
+  require_finite(std::span(&full_sample, 1), "a jackknife");
+  if (leave_one_out.size() < 2)
     throw std::invalid_argument("a jackknife needs at least two participants");
-  const auto n = static_cast<double>(without.size());
-  const double mean = mean_of(without);
-  const double estimate = n * all - (n - 1.0) * mean;
-  const double error = std::sqrt(n - 1.0) * standard_deviation(without, mean, n);
+  const auto n = static_cast<double>(leave_one_out.size());
+  const double mean = mean_of(leave_one_out);
+  const double estimate = n * full_sample - (n - 1.0) * mean;
+  const double error = std::sqrt(n - 1.0) * standard_deviation(leave_one_out, mean, n);
   const double t = boost::math::quantile(boost::math::students_t(n - 1.0), 0.5 * (1.0 + level));
-  const auto inside = [&](double value) {
+  const auto clamped = [&](double value) {
     return std::clamp(without_noise(value), range.low, range.high);
   };
-  return {inside(estimate), {inside(estimate - t * error), inside(estimate + t * error)}};
+  return {clamped(estimate), {clamped(estimate - t * error), clamped(estimate + t * error)}};
 }
 
 }  // namespace touchtrial::analysis

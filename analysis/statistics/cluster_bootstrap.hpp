@@ -16,14 +16,14 @@
 namespace touchtrial::analysis {
 
 inline constexpr int kBootstrapDraws = 9999;
-/// With fewer, the ends of a bootstrap interval are the most extreme draws.
-inline constexpr std::size_t kMinForBootstrap = 6;
+/// With fewer participants, the ends of a bootstrap interval are the most extreme draws.
+inline constexpr std::size_t kMinBootstrapParticipants = 6;
 
 /// The ends of a bootstrap interval: expanded percentiles. Plain percentiles treat the spread
-/// between participants as known; expanded ones lie further out, at Phi(-t sqrt(n / (n - 1))) on
-/// either side with Student's t of n - 1 degrees, and hold their level from about eight
+/// between participants as known. Expanded ones lie further out, at Phi(-t sqrt(n / (n - 1))) on
+/// either side with Student's t of n - 1 degrees; they keep their level from about eight
 /// participants on.
-/// \param draws  of a statistic, in any order, at least one
+/// \param draws  at least one draw of a statistic, in any order
 /// \param participants  n, >= 2
 /// \throws std::invalid_argument if an argument is out of range
 [[nodiscard]] Interval expanded_percentiles(std::vector<double> draws, std::size_t participants,
@@ -53,7 +53,7 @@ inline constexpr std::size_t kMinForBootstrap = 6;
                                                      double level = kConfidenceLevel);
 
 /// A statistic of the participants with these indices; an index that appears twice counts twice.
-using StatisticOfDrawn = std::function<double(std::span<const std::size_t> drawn)>;
+using ResampledStatistic = std::function<double(std::span<const std::size_t> drawn)>;
 
 /// The interval of any statistic over participants, by the same method.
 /// \param participants  their number
@@ -62,7 +62,7 @@ using StatisticOfDrawn = std::function<double(std::span<const std::size_t> drawn
 /// \return nothing with fewer than two participants
 /// \throws std::invalid_argument if a number is not finite, or an argument is out of range
 [[nodiscard]] std::optional<Interval> bootstrap_statistic(std::size_t participants,
-                                                          const StatisticOfDrawn& statistic,
+                                                          const ResampledStatistic& statistic,
                                                           std::uint64_t index = 0,
                                                           int draws = kBootstrapDraws,
                                                           double level = kConfidenceLevel);
@@ -92,14 +92,14 @@ struct JackknifeEstimate {
 };
 
 /// The jackknife over participants: an estimate without most of the bias that few participants give
-/// a statistic, n all - (n - 1) mean(without), and Student's t interval of n - 1 degrees from the
-/// spread of `without`. The estimate always lies in its interval. Source: docs/statistics.md,
-/// "Participants as clusters"; Miller 1974.
-/// \param all  the statistic of all participants
-/// \param without  the statistic without each of them, n >= 2
+/// a statistic, n full_sample - (n - 1) mean(leave_one_out), and Student's t interval of n - 1
+/// degrees from the spread of `leave_one_out`. The estimate always lies in its interval. Source:
+/// docs/statistics.md, "Participants as clusters"; Miller 1974.
+/// \param full_sample  the statistic of all participants
+/// \param leave_one_out  the n >= 2 statistics that each leave out one participant
 /// \param range  of possible values, to which estimate and interval are cut
 /// \throws std::invalid_argument if there are fewer than two, or a number is not finite
-[[nodiscard]] JackknifeEstimate jackknife(double all, std::span<const double> without,
+[[nodiscard]] JackknifeEstimate jackknife(double full_sample, std::span<const double> leave_one_out,
                                           const Interval& range, double level = kConfidenceLevel);
 
 }  // namespace touchtrial::analysis

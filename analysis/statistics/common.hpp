@@ -1,5 +1,4 @@
-/// \file What several statistics share: checks of their arguments, rounding, and the p of random
-/// draws.
+/// \file Helpers of several statistics: argument checks, rounding, and the p of random draws.
 #pragma once
 
 #include "analysis/statistics/proportion.hpp"
@@ -26,7 +25,7 @@ inline void require_possible(const Proportion& proportion) {
   }
 }
 
-/// \param what  is computed from the values: begins the message
+/// \param what  the computation, which begins the message
 /// \throws std::invalid_argument if a value is not finite
 inline void require_finite(std::span<const double> values, const char* what) {
   if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) {
@@ -34,15 +33,15 @@ inline void require_finite(std::span<const double> values, const char* what) {
   }
 }
 
-/// Removes what sums of proportions leave of rounding where the true number is 0.
-/// \return 0 for a number nearer to it than 1e-12, else the number
+/// Removes rounding errors of sums whose true value is 0.
+/// \return 0 if the number is nearer to 0 than 1e-12, otherwise the number
 [[nodiscard]] inline double without_noise(double number) noexcept {
   constexpr double kNoise = 1e-12;
   return std::abs(number) < kNoise ? 0.0 : number;
 }
 
 /// The p of a test by random draws, never 0. Source: Phipson, Smyth 2010.
-/// \param as_extreme  draws at least as extreme as what was observed
+/// \param as_extreme  the number of draws at least as extreme as the observation
 [[nodiscard]] inline double p_of_draws(double as_extreme, double draws) noexcept {
   return (as_extreme + 1.0) / (draws + 1.0);
 }

@@ -17,15 +17,15 @@ int checked_classes(int classes) {
   return classes;
 }
 
-/// The solution of an assignment problem by the Hungarian method with shortest augmenting paths:
-/// one row is added after another. Rows and columns count from 1; 0 means none.
+/// Solves an assignment problem by the Hungarian method with shortest augmenting paths, adding one
+/// row after another. Rows and columns count from 1; 0 means none.
 class Assignment {
  public:
   explicit Assignment(const Plane<std::int64_t>& cost)
       : cost_(cost),
         size_(cost.height()),
-        of_row_(size_ + 1),
-        of_column_(size_ + 1),
+        row_potential_(size_ + 1),
+        column_potential_(size_ + 1),
         row_of_column_(size_ + 1) {
     for (int row = 1; row <= size_; ++row) add(row);
   }
@@ -41,27 +41,28 @@ class Assignment {
   void add(int row) {
     row_of_column_[0] = row;
     shortest_.assign(size_ + 1, std::numeric_limits<std::int64_t>::max());
-    reached_.assign(size_ + 1, false);
-    before_.assign(size_ + 1, 0);
+    settled_.assign(size_ + 1, false);
+    previous_.assign(size_ + 1, 0);
     int column = 0;
     while (row_of_column_[column] != 0) column = advance(column);
-    for (; column != 0; column = before_[column]) {
-      row_of_column_[column] = row_of_column_[before_[column]];
+    for (; column != 0; column = previous_[column]) {
+      row_of_column_[column] = row_of_column_[previous_[column]];
     }
   }
 
   /// Settles `column`, shortens the paths over its row and updates the potentials.
-  /// \return the nearest column that is not settled
+  /// \return the nearest unsettled column
   int advance(int column) {
-    reached_[column] = true;
+    settled_[column] = true;
     const int row = row_of_column_[column];
     int nearest = 0;
     for (int j = 1; j <= size_; ++j) {
-      if (reached_[j]) continue;
-      const std::int64_t way = cost_.at(row - 1, j - 1) - of_row_[row] - of_column_[j];
-      if (way < shortest_[j]) {
-        shortest_[j] = way;
-        before_[j] = column;
+      if (settled_[j]) continue;
+      const std::int64_t reduced_cost =
+          cost_.at(row - 1, j - 1) - row_potential_[row] - column_potential_[j];
+      if (reduced_cost < shortest_[j]) {
+        shortest_[j] = reduced_cost;
+        previous_[j] = column;
       }
       if (nearest == 0 || shortest_[j] < shortest_[nearest]) nearest = j;
     }
@@ -71,9 +72,9 @@ class Assignment {
 
   void move_potentials(std::int64_t step) {
     for (int j = 0; j <= size_; ++j) {
-      if (reached_[j]) {
-        of_row_[row_of_column_[j]] += step;
-        of_column_[j] -= step;
+      if (settled_[j]) {
+        row_potential_[row_of_column_[j]] += step;
+        column_potential_[j] -= step;
       } else {
         shortest_[j] -= step;
       }
@@ -82,9 +83,9 @@ class Assignment {
 
   const Plane<std::int64_t>& cost_;
   int size_;
-  std::vector<std::int64_t> of_row_, of_column_, shortest_;
-  std::vector<int> row_of_column_, before_;
-  std::vector<bool> reached_;
+  std::vector<std::int64_t> row_potential_, column_potential_, shortest_;
+  std::vector<int> row_of_column_, previous_;
+  std::vector<bool> settled_;
 };
 
 }  // namespace
@@ -95,8 +96,8 @@ ConfusionMatrix::ConfusionMatrix(int classes, std::span<const Choice> choices)
 }
 
 void ConfusionMatrix::add(const Choice& choice, int times) {
-  const auto known = [this](int index) { return index >= 0 && index < classes(); };
-  if (!known(choice.presented) || (choice.answered && !known(*choice.answered))) {
+  const auto is_in_range = [this](int index) { return index >= 0 && index < classes(); };
+  if (!is_in_range(choice.presented) || (choice.answered && !is_in_range(*choice.answered))) {
     throw std::invalid_argument("a confusion matrix has no such class");
   }
   if (choice.answered) {
@@ -118,8 +119,8 @@ int ConfusionMatrix::answered(int answered) const noexcept {
 }
 
 int ConfusionMatrix::answered() const noexcept {
-  const auto all = counts_.samples();
-  return std::accumulate(all.begin(), all.end(), 0);
+  const auto counts = counts_.samples();
+  return std::accumulate(counts.begin(), counts.end(), 0);
 }
 
 Proportion ConfusionMatrix::accuracy(int presented) const noexcept {
@@ -127,13 +128,9 @@ Proportion ConfusionMatrix::accuracy(int presented) const noexcept {
 }
 
 Proportion ConfusionMatrix::accuracy() const noexcept {
-  Proportion all;
-  for (int i = 0; i < classes(); ++i) {
-    const Proportion one = accuracy(i);
-    all.n += one.n;
-    all.correct += one.correct;
-  }
-  return all;
+  Proportion total;
+  for (int i = 0; i < classes(); ++i) total += accuracy(i);
+  return total;
 }
 
 std::optional<double> unbiased_hit_rate(const ConfusionMatrix& confusion, int class_index) {
@@ -151,7 +148,7 @@ std::optional<double> unbiased_hit_rate_by_chance(const ConfusionMatrix& confusi
   const double n = confusion.accuracy().n;
   if (presented == 0.0) return std::nullopt;
   if (answered == 0.0) return 0.0;
-  // Right answers are hypergeometric: this is their mean square over both margins.
+  // The number of right answers is hypergeometric; this is its mean square over both margins.
   const double mean = presented * answered / n;
   const double variance = n > 1.0 ? mean * (n - presented) / n * (n - answered) / (n - 1.0) : 0.0;
   return (mean * mean + variance) / (presented * answered);
@@ -167,7 +164,7 @@ LabelMatching best_label_matching(const ConfusionMatrix& confusion) {
   Plane<std::int64_t> cost(classes, classes);
   for (int i = 0; i < classes; ++i) {
     for (int j = 0; j < classes; ++j) {
-      // One trial outweighs all unchanged labels together.
+      // One trial outweighs all unchanged labels together, so labels only break ties.
       cost.at(i, j) = -(std::int64_t{confusion.count(i, j)} * (classes + 1) + (i == j ? 1 : 0));
     }
   }
@@ -179,22 +176,21 @@ LabelMatching best_label_matching(const ConfusionMatrix& confusion) {
 }
 
 double label_swap_p(const ConfusionMatrix& confusion, const LabelMatching& best) {
-  int moved = 0;
-  int own = 0;
-  int matched = 0;
+  int relabelled = 0;
+  int own_label = 0;
+  int matched_label = 0;
   for (int i = 0; i < confusion.classes(); ++i) {
     if (best.answer_of[i] == i) continue;
-    ++moved;
-    own += confusion.count(i, i);
-    matched += confusion.count(i, best.answer_of[i]);
+    ++relabelled;
+    own_label += confusion.count(i, i);
+    matched_label += confusion.count(i, best.answer_of[i]);
   }
-  if (matched == 0) return 1.0;
-  // The number of derangements of `moved` labels.
-  double exchanges = 1.0;
-  for (int k = 1; k <= moved; ++k) exchanges = k * exchanges + (k % 2 == 0 ? 1.0 : -1.0);
-  const boost::math::binomial_distribution<> coins(own + matched, 0.5);
-  const double tail = boost::math::cdf(boost::math::complement(coins, matched - 1));
-  return std::min(1.0, exchanges * tail);
+  if (matched_label == 0) return 1.0;
+  double derangements = 1.0;  // of `relabelled` labels
+  for (int k = 1; k <= relabelled; ++k) derangements = k * derangements + (k % 2 == 0 ? 1.0 : -1.0);
+  const boost::math::binomial_distribution<> fair_coin(own_label + matched_label, 0.5);
+  const double tail = boost::math::cdf(boost::math::complement(fair_coin, matched_label - 1));
+  return std::min(1.0, derangements * tail);
 }
 
 }  // namespace touchtrial::analysis

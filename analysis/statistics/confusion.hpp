@@ -1,5 +1,5 @@
-/// \file The confusion matrix, and the accuracy under the best exchange of labels. Source of the
-/// latter: docs/statistics.md, "Swapped labels"; Kuhn 1955.
+/// \file The confusion matrix, and the accuracy under the best matching of labels. Sources:
+/// docs/statistics.md, "Swapped labels"; Kuhn 1955.
 #pragma once
 
 #include "analysis/statistics/proportion.hpp"
@@ -36,13 +36,13 @@ class ConfusionMatrix {
 
   /// Trials that presented a class, including those without a response.
   [[nodiscard]] int presented(int presented) const noexcept;
-  /// Trials with one answer, whatever was presented.
+  /// Trials with this answer, regardless of the presented class.
   [[nodiscard]] int answered(int answered) const noexcept;
   /// All trials with a response.
   [[nodiscard]] int answered() const noexcept;
-  /// Of the trials of one class; a trial without a response is wrong.
+  /// Accuracy for one class; a trial without a response is wrong.
   [[nodiscard]] Proportion accuracy(int presented) const noexcept;
-  /// Of all trials; a trial without a response is wrong.
+  /// Accuracy over all trials; a trial without a response is wrong.
   [[nodiscard]] Proportion accuracy() const noexcept;
 
   friend bool operator==(const ConfusionMatrix&, const ConfusionMatrix&) = default;
@@ -58,7 +58,6 @@ class ConfusionMatrix {
 /// The share of a class's presentations that were answered right, times the share of its answers
 /// that were right. Always giving the same answer scores no more than that class's share of the
 /// presentations. Source: docs/statistics.md, "Unbiased hit rate"; Wagner 1993.
-///
 /// \return 0 if the class was never answered right; nothing if it was never presented
 [[nodiscard]] std::optional<double> unbiased_hit_rate(const ConfusionMatrix& confusion,
                                                       int class_index);
@@ -70,21 +69,21 @@ class ConfusionMatrix {
 
 /// The one-to-one matching of classes and answers that agrees with the most trials.
 struct LabelMatching {
-  Proportion accuracy;         ///< of all trials, those with the matched answer
-  std::vector<int> answer_of;  ///< by presented class; keeps its own label where matchings tie
+  Proportion accuracy;         ///< trials with the matched answer
+  std::vector<int> answer_of;  ///< by presented class; its own label where matchings tie
 };
 
-/// The best matching. It shows whether a participant distinguishes the classes but mixes up their
-/// labels. Choosing the best matching biases the accuracy upward: with few trials it is above
-/// chance even for random answers. Cost: O(K^3) for K classes.
+/// Shows whether a participant distinguishes the classes but mixes up their labels. Choosing the
+/// best matching biases the accuracy upward: with few trials it is above chance even for random
+/// answers. Cost: O(K^3) for K classes.
 [[nodiscard]] LabelMatching best_label_matching(const ConfusionMatrix& confusion);
 
 /// Tests the null hypothesis that a participant gives classes their own labels at least as often as
-/// those of the best matching. Only answers to the moved classes that agree with either labelling
-/// count; without a preference each is a fair coin. The p is the binomial tail times the number of
-/// ways to exchange as many labels, which corrects for choosing the best one.
+/// the labels of the best matching. Only answers to relabelled classes that agree with either
+/// labelling count; under the null hypothesis each is a fair coin. The p is the binomial tail times
+/// the number of ways to exchange that number of labels, which corrects for choosing the best way.
 /// \param best  best_label_matching of the same counts
-/// \return in (0, 1]; 1 if no label is moved
+/// \return in (0, 1]; 1 if the best matching changes no label
 [[nodiscard]] double label_swap_p(const ConfusionMatrix& confusion, const LabelMatching& best);
 
 }  // namespace touchtrial::analysis

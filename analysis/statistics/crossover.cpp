@@ -14,7 +14,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// The differences of the two groups, the first method less the second in both.
+/// Differences by group: the first method less the second in both.
 struct OrderGroups {
   std::vector<double> first_first;
   std::vector<double> second_first;
@@ -27,7 +27,7 @@ struct OrderGroups {
 OrderGroups groups_of(std::span<const CrossoverPerson> people) {
   OrderGroups groups;
   for (const CrossoverPerson& one : people) {
-    (one.first_came_first ? groups.first_first : groups.second_first).push_back(one.difference);
+    (one.first_method_first ? groups.first_first : groups.second_first).push_back(one.difference);
   }
   return groups;
 }
@@ -39,7 +39,6 @@ void require_finite_people(std::span<const CrossoverPerson> people, double null)
   require_finite(std::span(&null, 1), "a crossover");
 }
 
-/// The sum of squared distances from the mean.
 double squares_about(const std::vector<double>& values, double mean) {
   const double sd = standard_deviation(values, mean, 1.0);
   return sd * sd;
@@ -54,40 +53,43 @@ double standard_error(const OrderGroups& groups, double freedom) {
   return without_noise(0.5 * std::sqrt(squares / freedom * (1.0 / n_first + 1.0 / n_second)));
 }
 
-Interval interval_around(double estimate, double reach) {
-  return {std::clamp(estimate - reach, -1.0, 1.0), std::clamp(estimate + reach, -1.0, 1.0)};
+Interval interval_around(double estimate, double half_width) {
+  return {std::clamp(estimate - half_width, -1.0, 1.0),
+          std::clamp(estimate + half_width, -1.0, 1.0)};
 }
 
-/// For each block, the term whose sign changes when its orders are exchanged. The sum of the terms
-/// is proportional to the groups' difference in period differences.
-std::vector<double> exchangeable_sums(std::span<const CrossoverPerson> people, double null) {
+/// For each block, the term that changes sign when the block's orders are exchanged. The sum of the
+/// terms is proportional to the groups' difference in period differences.
+std::vector<double> sign_flip_terms(std::span<const CrossoverPerson> people, double null) {
   const auto period_difference = [null](const CrossoverPerson& one) {
-    return one.first_came_first ? one.difference - null : null - one.difference;
+    return one.first_method_first ? one.difference - null : null - one.difference;
   };
   double mean = 0.0;
   std::map<int, std::vector<const CrossoverPerson*>> blocks;
-  std::vector<const CrossoverPerson*> alone;
+  std::vector<const CrossoverPerson*> unpaired;
   for (const CrossoverPerson& one : people) {
     mean += period_difference(one) / static_cast<double>(people.size());
     if (one.block >= 0) {
       blocks[one.block].push_back(&one);
     } else {
-      alone.push_back(&one);
+      unpaired.push_back(&one);
     }
   }
-  std::vector<double> sums;
-  for (const auto& [block, own] : blocks) {
-    if (own.size() == 2 && own[0]->first_came_first != own[1]->first_came_first) {
-      sums.push_back(without_noise(own[0]->difference + own[1]->difference - 2.0 * null));
+  std::vector<double> terms;
+  for (const auto& [block, partners] : blocks) {
+    if (partners.size() == 2 &&
+        partners[0]->first_method_first != partners[1]->first_method_first) {
+      terms.push_back(
+          without_noise(partners[0]->difference + partners[1]->difference - 2.0 * null));
     } else {
-      alone.insert(alone.end(), own.begin(), own.end());
+      unpaired.insert(unpaired.end(), partners.begin(), partners.end());
     }
   }
-  for (const CrossoverPerson* one : alone) {
+  for (const CrossoverPerson* one : unpaired) {
     const double distance = period_difference(*one) - mean;
-    sums.push_back(without_noise(one->first_came_first ? distance : -distance));
+    terms.push_back(without_noise(one->first_method_first ? distance : -distance));
   }
-  return sums;
+  return terms;
 }
 
 }  // namespace
@@ -112,9 +114,9 @@ CrossoverEstimate crossover_estimate(std::span<const CrossoverPerson> people, do
     estimate.p = crossover_permutation(people, null, sides)->p;
     return estimate;
   }
-  const double reach = error * quantile(complement(distribution, 0.5 * (1.0 - level)));
-  estimate.interval = interval_around(*estimate.effect, reach);
-  estimate.period_interval = interval_around(*estimate.period, reach);
+  const double half_width = error * quantile(complement(distribution, 0.5 * (1.0 - level)));
+  estimate.interval = interval_around(*estimate.effect, half_width);
+  estimate.period_interval = interval_around(*estimate.period, half_width);
   const double t = (*estimate.effect - null) / error;
   estimate.p = sides == Sides::one
                    ? cdf(complement(distribution, t))
@@ -126,8 +128,8 @@ std::optional<CrossoverPermutation> crossover_permutation(std::span<const Crosso
                                                           double null, Sides sides) {
   require_finite_people(people, null);
   if (!groups_of(people).has_both()) return std::nullopt;
-  const std::vector<double> sums = exchangeable_sums(people, null);
-  return CrossoverPermutation{*sign_flip_p(sums, sides), sign_flip_least(sums, sides)};
+  const std::vector<double> terms = sign_flip_terms(people, null);
+  return CrossoverPermutation{*sign_flip_p(terms, sides), sign_flip_min_p(terms, sides)};
 }
 
 }  // namespace touchtrial::analysis

@@ -11,12 +11,12 @@
 
 namespace touchtrial::analysis {
 
-/// One participant who had both methods, one after the other.
+/// One participant who felt both methods, one after the other.
 struct CrossoverPerson {
-  double difference = 0.0;        ///< accuracy with the first method less that with the second
-  bool first_came_first = false;  ///< whether the first method had the first period
-  /// Partners, who share a number, were randomly assigned one order each. A participant without a
-  /// partner got either order with the same probability. Negative: no partner.
+  double difference = 0.0;  ///< accuracy with the first method minus accuracy with the second
+  bool first_method_first = false;  ///< the first method was felt in the first period
+  /// Partners share a number and were randomly assigned one order each. A participant without a
+  /// partner (negative) got either order with the same probability.
   int block = -1;
 };
 
@@ -24,9 +24,9 @@ struct CrossoverPerson {
 /// those who had it last.
 struct CrossoverEstimate {
   int first_first = 0;             ///< participants who had the first method first
-  int second_first = 0;            ///< the others
-  std::optional<double> effect{};  ///< first method less second; nothing without both groups
-  std::optional<double> period{};  ///< second period less first, likewise
+  int second_first = 0;            ///< participants who had the second method first
+  std::optional<double> effect{};  ///< first method minus second; nothing without both groups
+  std::optional<double> period{};  ///< second period minus first; nothing without both groups
   /// Student's, with a pooled variance and n - 2 degrees of freedom; within [-1, 1]. Nothing with
   /// fewer than three participants, without both groups, or if values do not vary within groups.
   std::optional<Interval> interval{};
@@ -35,9 +35,8 @@ struct CrossoverEstimate {
 };
 
 /// The period-adjusted comparison: half the difference between the groups' mean period differences,
-/// which equals the mean of the groups' mean method differences. If values do not vary within
-/// groups, t does not exist; p is then that of crossover_permutation.
-///
+/// equal to the mean of the groups' mean method differences. If values do not vary within groups, t
+/// does not exist; p then comes from crossover_permutation.
 /// \param null  the effect under the null hypothesis
 /// \param level  of the intervals, in (0, 1)
 /// \throws std::invalid_argument if a difference or `null` is not finite, or the level is not in
@@ -56,7 +55,6 @@ struct CrossoverPermutation {
 /// are reassigned block by block: partners may exchange theirs, and everybody else may get either.
 /// The statistic is the groups' difference in period differences. With up to kExactSignFlips blocks
 /// all assignments are counted; beyond that, 99,999 random ones are drawn (Phipson, Smyth 2010).
-///
 /// \return nothing without both groups
 /// \throws std::invalid_argument if a difference or `null` is not finite
 [[nodiscard]] std::optional<CrossoverPermutation> crossover_permutation(

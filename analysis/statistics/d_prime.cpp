@@ -24,22 +24,22 @@ std::optional<double> type_2_area(std::span<const RatedAnswer> answers) {
   }
   std::int64_t all_right = 0;
   std::int64_t lower_wrong = 0;
-  std::int64_t twice_won = 0;
+  std::int64_t doubled_wins = 0;
   for (const auto& [rating, counts] : by_rating) {
     const auto& [right, wrong] = counts;
-    twice_won += right * (2 * lower_wrong + wrong);
+    doubled_wins += right * (2 * lower_wrong + wrong);
     all_right += right;
     lower_wrong += wrong;
   }
   if (all_right == 0 || lower_wrong == 0) return std::nullopt;
-  return 0.5 * static_cast<double>(twice_won) / static_cast<double>(all_right * lower_wrong);
+  return 0.5 * static_cast<double>(doubled_wins) / static_cast<double>(all_right * lower_wrong);
 }
 
 namespace {
 
 /// Beyond this distance from the mean a normal density is 0 in double precision.
-constexpr double kReach = 12.0;
-/// From here on a normal distribution is 1 in double precision.
+constexpr double kIntegrationLimit = 12.0;
+/// Above this, the normal distribution function is 1 in double precision.
 constexpr double kCertain = 8.5;
 /// No proportion of counts needs a larger d'.
 constexpr double kMaxDPrime = 50.0;
@@ -63,14 +63,15 @@ double proportion_correct_of(double d_prime, int alternatives) {
   require_alternatives(alternatives);
   if (!std::isfinite(d_prime)) throw std::invalid_argument("d' must be finite");
   const boost::math::normal_distribution<> normal;
-  // The integral over z with z = u + d': the weight's place does not depend on d'.
-  const auto all_others_are_weaker = [&](double u) {
-    const double weaker = u + d_prime < kCertain ? boost::math::cdf(normal, u + d_prime) : 1.0;
-    return boost::math::pdf(normal, u) * std::pow(weaker, alternatives - 1);
+  // The integral over z with z = u + d', so that the weight does not depend on d'.
+  const auto density_of_correct = [&](double u) {
+    const double others_weaker =
+        u + d_prime < kCertain ? boost::math::cdf(normal, u + d_prime) : 1.0;
+    return boost::math::pdf(normal, u) * std::pow(others_weaker, alternatives - 1);
   };
   // The integrand vanishes at both ends, so the trapezoidal rule converges exponentially.
-  const double share =
-      boost::math::quadrature::trapezoidal(all_others_are_weaker, -kReach, kReach, 1e-13);
+  const double share = boost::math::quadrature::trapezoidal(density_of_correct, -kIntegrationLimit,
+                                                            kIntegrationLimit, 1e-13);
   return std::clamp(share, 0.0, 1.0);
 }
 

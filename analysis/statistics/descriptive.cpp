@@ -40,9 +40,9 @@ MeanEstimate participant_mean(std::span<const double> values, Interval range, do
   const double sd = without_noise(standard_deviation(values, mean, n - 1.0));
   estimate.sd = sd;
   const boost::math::students_t_distribution<> t(n - 1.0);
-  const double half = boost::math::quantile(t, 0.5 + level / 2.0) * sd / std::sqrt(n);
-  estimate.interval = {std::clamp(without_noise(mean - half), range.low, range.high),
-                       std::clamp(without_noise(mean + half), range.low, range.high)};
+  const double half_width = boost::math::quantile(t, 0.5 + level / 2.0) * sd / std::sqrt(n);
+  estimate.interval = {std::clamp(without_noise(mean - half_width), range.low, range.high),
+                       std::clamp(without_noise(mean + half_width), range.low, range.high)};
   return estimate;
 }
 

@@ -14,12 +14,12 @@ namespace touchtrial::analysis {
 [[nodiscard]] double mean_of(std::span<const double> values);
 
 /// The square root of the sum of squared deviations divided by `divisor`.
-/// \param divisor  n for the values themselves, n - 1 for the population they are a sample of
+/// \param divisor  n for the values themselves, n - 1 to estimate the population's
 [[nodiscard]] double standard_deviation(std::span<const double> values, double mean,
                                         double divisor);
 
-/// Whether there are two or more values, equal except for rounding. Student's t and its interval do
-/// not exist then, because the spread between people is unknown.
+/// Whether there are two or more values that are equal except for rounding. Then Student's t and
+/// its interval do not exist, because the spread between people is unknown.
 [[nodiscard]] bool all_alike(std::span<const double> values);
 
 /// A mean over participants and its Student's t interval. A study samples participants; pooling
@@ -27,8 +27,8 @@ namespace touchtrial::analysis {
 struct MeanEstimate {
   int participants = 0;
   std::optional<double> mean;  ///< nothing without participants
-  Interval
-      interval;  ///< the whole range with fewer than two participants; a point if all are alike
+  /// The full range with fewer than two participants; a point if all values are equal.
+  Interval interval;
   std::optional<double> sd{};  ///< between participants, n - 1; nothing with fewer than two
 
   /// The interval to show: `interval`, or nothing if there are fewer than two participants or all
@@ -40,7 +40,7 @@ struct MeanEstimate {
 };
 
 /// \param values  one number per participant
-/// \param range  of all possible values; the interval is cut to it
+/// \param range  of all possible values; the interval is clipped to it
 /// \param level  in (0, 1)
 /// \throws std::invalid_argument if the level is not in (0, 1), or a value is not finite
 [[nodiscard]] MeanEstimate participant_mean(std::span<const double> values,

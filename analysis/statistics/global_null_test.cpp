@@ -12,30 +12,31 @@
 namespace touchtrial::analysis {
 namespace {
 
-void require_deals(std::span<const double> values, std::size_t wanted) {
-  if (values.size() != wanted) {
-    throw std::invalid_argument("a global null test needs an observed value and one for each deal");
+void require_deals(std::span<const double> values, std::size_t expected) {
+  if (values.size() != expected) {
+    throw std::invalid_argument("a global null test needs one observed value and one per deal");
   }
 }
 
 /// The largest rank such that at most kSignificanceLevel of all deals reach it or are significant
-/// by Holm. If Holm alone exceeds that level, a rank that no deal reaches.
-double rank_at_level(std::span<const double> by_holm, std::span<const double> rank) {
-  std::vector<double> others;
+/// by Holm. If the deals significant by Holm exceed that level, the result is a rank that no deal
+/// reaches.
+double rank_at_level(std::span<const double> holm_p, std::span<const double> rank) {
+  std::vector<double> candidates;
   for (std::size_t i = 0; i < rank.size(); ++i) {
-    if (by_holm[i] > kSignificanceLevel) others.push_back(rank[i]);
+    if (holm_p[i] > kSignificanceLevel) candidates.push_back(rank[i]);
   }
-  std::ranges::sort(others);
-  const auto all = static_cast<double>(rank.size());
-  const double left =
-      std::floor(kSignificanceLevel * all) - (all - static_cast<double>(others.size()));
-  const double nobody = 0.5 / all;
-  if (left < 1.0) return nobody;
-  auto last = others.begin() + static_cast<std::ptrdiff_t>(left);
-  if (last == others.end()) return others.back();
+  std::ranges::sort(candidates);
+  const auto deal_count = static_cast<double>(rank.size());
+  const double allowed = std::floor(kSignificanceLevel * deal_count) -
+                         (deal_count - static_cast<double>(candidates.size()));
+  const double unreached_rank = 0.5 / deal_count;
+  if (allowed < 1.0) return unreached_rank;
+  auto last = candidates.begin() + static_cast<std::ptrdiff_t>(allowed);
+  if (last == candidates.end()) return candidates.back();
   // Deals that tie at a rank are counted together.
-  last = std::ranges::lower_bound(others.begin(), last, *last);
-  return last == others.begin() ? nobody : *std::prev(last);
+  last = std::ranges::lower_bound(candidates.begin(), last, *last);
+  return last == candidates.begin() ? unreached_rank : *std::prev(last);
 }
 
 }  // namespace
@@ -73,45 +74,45 @@ GlobalNullTest::GlobalNullTest(int people, int deals)
 
 void GlobalNullTest::add(std::span<const double> p) {
   require_deals(p, smallest_.size());
-  const auto possible = [](double one) { return one > 0.0 && one <= 1.0; };
-  if (!std::ranges::all_of(p, possible)) {
+  const auto is_valid = [](double one) { return one > 0.0 && one <= 1.0; };
+  if (!std::ranges::all_of(p, is_valid)) {
     throw std::invalid_argument("a p must be in (0, 1]");
   }
   ++added_;
   for (std::size_t i = 0; i < p.size(); ++i) {
     smallest_[i] = std::min(smallest_[i], p[i]);
     product_[i] -= std::log(p[i]);
-    if (p[i] <= kSignificanceLevel) ++(i == 0 ? alone_ : alone_in_deals_);
+    if (p[i] <= kSignificanceLevel) ++(i == 0 ? significant_ : significant_in_deals_);
   }
 }
 
-GlobalNullResult GlobalNullTest::result(std::span<const double> together) const {
-  require_deals(together, smallest_.size());
+GlobalNullResult GlobalNullTest::result(std::span<const double> pooled) const {
+  require_deals(pooled, smallest_.size());
   if (added_ != people_) {
     throw std::invalid_argument(
         "a global null test needs the number of people that it was constructed with");
   }
-  std::vector<double> by_holm(smallest_.size());
-  for (std::size_t i = 0; i < by_holm.size(); ++i) by_holm[i] = smallest_[i] * people_;
-  const std::vector<double> of_product = ranked_p(product_);
-  const std::vector<double> of_together = ranked_p(together);
+  std::vector<double> holm_p(smallest_.size());
+  for (std::size_t i = 0; i < holm_p.size(); ++i) holm_p[i] = smallest_[i] * people_;
+  const std::vector<double> product_rank = ranked_p(product_);
+  const std::vector<double> pooled_rank = ranked_p(pooled);
   std::vector<double> rank(smallest_.size());
-  for (std::size_t i = 0; i < rank.size(); ++i) rank[i] = std::min(of_product[i], of_together[i]);
-  const double at_level = rank_at_level(by_holm, rank) / kSignificanceLevel;
-  std::vector<double> against(smallest_.size());
-  for (std::size_t i = 0; i < against.size(); ++i) {
-    against[i] = -std::log(std::min(by_holm[i], rank[i] / at_level));
+  for (std::size_t i = 0; i < rank.size(); ++i) rank[i] = std::min(product_rank[i], pooled_rank[i]);
+  const double level_scale = rank_at_level(holm_p, rank) / kSignificanceLevel;
+  std::vector<double> evidence(smallest_.size());
+  for (std::size_t i = 0; i < evidence.size(); ++i) {
+    evidence[i] = -std::log(std::min(holm_p[i], rank[i] / level_scale));
   }
   GlobalNullResult result;
   result.deals = static_cast<int>(smallest_.size()) - 1;
   result.people = people_;
-  result.alone = alone_;
-  result.alone_by_chance = static_cast<double>(alone_in_deals_) / result.deals;
+  result.alone = significant_;
+  result.alone_by_chance = static_cast<double>(significant_in_deals_) / result.deals;
   if (people_ == 0) return result;
-  result.p = ranked_p(against).front();
-  // If Holm alone is significant, p is at most Holm's: the exact value is better than the Monte
-  // Carlo one.
-  if (by_holm.front() <= kSignificanceLevel) result.p = std::min(result.p, by_holm.front());
+  result.p = ranked_p(evidence).front();
+  // If Holm's p is significant by itself, p is at most Holm's: the exact value is better than the
+  // Monte Carlo one.
+  if (holm_p.front() <= kSignificanceLevel) result.p = std::min(result.p, holm_p.front());
   return result;
 }
 

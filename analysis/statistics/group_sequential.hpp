@@ -1,6 +1,6 @@
-/// \file Nominal significance levels for several looks at the data, which together keep the error
-/// rate. Sources: docs/statistics.md, "Registered looks"; Lan, DeMets 1983; Armitage, McPherson,
-/// Rowe 1969.
+/// \file Nominal significance levels for several looks at the data that together keep the type I
+/// error rate. Sources: docs/statistics.md, "Registered looks"; Lan, DeMets 1983; Armitage,
+/// McPherson, Rowe 1969.
 #pragma once
 
 #include "analysis/statistics/mean_test.hpp"
@@ -14,16 +14,16 @@ namespace touchtrial::analysis {
 enum class AlphaSpending {
   /// Little at first: 2 (1 - Phi(z / sqrt(share))), with z the quantile of 1 - alpha / 2.
   obrien_fleming,
-  pocock,  ///< about as much at every look: alpha log(1 + (e - 1) share)
+  pocock,  ///< about equal at every look: alpha log(1 + (e - 1) share)
 };
 
 /// The nominal level at each look: the test rejects if the p of the data so far does not exceed it.
-/// Statistics of all looks are taken as multivariate normal with independent increments, which
-/// holds for tests of means of many participants. Two-sided tests spend half of alpha on each side.
+/// Assumes multivariate normal statistics with independent increments, which holds for tests of
+/// means of many participants. Two-sided tests spend half of alpha on each side.
 /// \param alpha  of all looks together, in (0, 0.5]
 /// \param shares  of the information at the looks, ascending, in (0, 1]
-/// \return one level for each look, on the scale of the test's own p; the error is below 1e-9 if
-///   looks are at least 1e-5 of the information apart
+/// \return one level per look, to compare with the test's p; the error is below 1e-9 if looks are
+///   at least 1e-5 of the information apart
 /// \throws std::invalid_argument if an argument is out of range
 [[nodiscard]] std::vector<double> nominal_levels(double alpha, Sides sides, AlphaSpending spending,
                                                  std::span<const double> shares);

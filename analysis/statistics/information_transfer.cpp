@@ -16,25 +16,25 @@ struct Answers {
   std::vector<int> answered;
 };
 
-std::vector<Answers> with_response(std::span<const std::vector<Choice>> by_participant) {
-  std::vector<Answers> all;
+std::vector<Answers> answers_with_response(std::span<const std::vector<Choice>> by_participant) {
+  std::vector<Answers> people;
   for (const std::vector<Choice>& choices : by_participant) {
-    Answers& mine = all.emplace_back();
+    Answers& person_answers = people.emplace_back();
     for (const Choice& choice : choices) {
       if (!choice.answered) continue;
-      mine.presented.push_back(choice.presented);
-      mine.answered.push_back(*choice.answered);
+      person_answers.presented.push_back(choice.presented);
+      person_answers.answered.push_back(*choice.answered);
     }
   }
-  return all;
+  return people;
 }
 
-/// \param all  with classes in range
-ConfusionMatrix pooled(int classes, std::span<const Answers> all) {
+/// \param people  with classes in range
+ConfusionMatrix pool_answers(int classes, std::span<const Answers> people) {
   Plane<int> counts(classes, classes);
-  for (const Answers& mine : all) {
-    for (std::size_t i = 0; i < mine.presented.size(); ++i) {
-      ++counts.at(mine.presented[i], mine.answered[i]);
+  for (const Answers& person_answers : people) {
+    for (std::size_t i = 0; i < person_answers.presented.size(); ++i) {
+      ++counts.at(person_answers.presented[i], person_answers.answered[i]);
     }
   }
   ConfusionMatrix confusion(classes);
@@ -44,12 +44,12 @@ ConfusionMatrix pooled(int classes, std::span<const Answers> all) {
   return confusion;
 }
 
-double mean_of_random_deals(int classes, std::vector<Answers> all, RandomStream& random,
+double mean_of_permutations(int classes, std::vector<Answers> people, RandomStream& random,
                             int permutations) {
   double sum = 0.0;
   for (int i = 0; i < permutations; ++i) {
-    for (Answers& mine : all) shuffle(std::span(mine.answered), random);
-    sum += raw_information_transfer(pooled(classes, all)).value_or(0.0);
+    for (Answers& person_answers : people) shuffle(std::span(person_answers.answered), random);
+    sum += raw_information_transfer(pool_answers(classes, people)).value_or(0.0);
   }
   return sum / permutations;
 }
@@ -60,14 +60,14 @@ std::optional<double> raw_information_transfer(const ConfusionMatrix& confusion)
   const double n = confusion.answered();
   if (n == 0.0) return std::nullopt;
   const int classes = confusion.classes();
-  std::vector<double> of_column(classes);
-  for (int j = 0; j < classes; ++j) of_column[j] = confusion.answered(j);
+  std::vector<double> column_total(classes);
+  for (int j = 0; j < classes; ++j) column_total[j] = confusion.answered(j);
   double bits = 0.0;
   for (int i = 0; i < classes; ++i) {
-    const double of_row = confusion.presented(i) - confusion.no_response(i);
+    const double row_total = confusion.presented(i) - confusion.no_response(i);
     for (int j = 0; j < classes; ++j) {
-      const double here = confusion.count(i, j);
-      if (here > 0.0) bits += here / n * std::log2(here * n / (of_row * of_column[j]));
+      const double count = confusion.count(i, j);
+      if (count > 0.0) bits += count / n * std::log2(count * n / (row_total * column_total[j]));
     }
   }
   return std::max(0.0, bits);  // rounding may leave it just below 0
@@ -91,7 +91,7 @@ InformationTransfer information_transfer(int classes,
   transfer.corrected = *transfer.raw - freedom / (2.0 * confusion.answered() * std::numbers::ln2);
   RandomStream random(0, "information transfer null", index);
   transfer.null_mean =
-      mean_of_random_deals(classes, with_response(by_participant), random, permutations);
+      mean_of_permutations(classes, answers_with_response(by_participant), random, permutations);
   return transfer;
 }
 

@@ -12,10 +12,10 @@
 
 namespace touchtrial::analysis {
 
-/// Over trials with a response; without any, all three numbers are absent.
+/// Estimates over trials with a response; missing if there is none.
 struct InformationTransfer {
   std::optional<double> raw;        ///< estimate from the counts, bits, >= 0, biased upward
-  std::optional<double> corrected;  ///< raw less Miller and Madow's bias; may be below 0
+  std::optional<double> corrected;  ///< raw minus Miller and Madow's bias; may be below 0
   std::optional<double> null_mean;  ///< mean of raw over random permutations of the answers
   int deals = 0;                    ///< permutations behind null_mean
 };
@@ -25,13 +25,13 @@ struct InformationTransfer {
   return 5 * classes * classes;
 }
 
-/// The estimate from the counts alone: the sum of n_ij/n log2(n_ij n / (n_i. n_.j)).
+/// The uncorrected estimate from the counts: the sum of n_ij/n log2(n_ij n / (n_i. n_.j)).
 /// \return bits, or nothing if no trial has a response
 [[nodiscard]] std::optional<double> raw_information_transfer(const ConfusionMatrix& confusion);
 
 /// \param by_participant  every participant's trials; answers are permuted within a participant
 /// \param index  chooses the stream of random numbers, so that methods do not share one
-/// \param permutations  over which the null mean is taken, >= 1
+/// \param permutations  behind the null mean, >= 1
 /// \throws std::invalid_argument if a class is out of range or permutations < 1
 [[nodiscard]] InformationTransfer information_transfer(
     int classes, std::span<const std::vector<Choice>> by_participant, std::uint64_t index = 0,

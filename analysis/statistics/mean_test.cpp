@@ -14,8 +14,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// The sign-flip p of equal values.
-double p_of_equals(double distance, std::size_t n, Sides sides) {
+double equal_values_p(double distance, std::size_t n, Sides sides) {
   if (distance == 0.0 || (sides == Sides::one && distance < 0.0)) return 1.0;
   return std::ldexp(sides == Sides::one ? 1.0 : 2.0, -static_cast<int>(n));
 }
@@ -72,7 +71,7 @@ std::optional<double> t_test_p(std::span<const double> values, double null, Side
   if (values.size() < 2) return std::nullopt;
   const std::optional<TStatistic> statistic = t_statistic_without_interval(values, null);
   if (!statistic) {
-    return p_of_equals(without_noise(mean_of(values) - null), values.size(), sides);
+    return equal_values_p(without_noise(mean_of(values) - null), values.size(), sides);
   }
   const boost::math::students_t_distribution<> distribution(statistic->degrees_of_freedom);
   const double t = statistic->t;

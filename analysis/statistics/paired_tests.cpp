@@ -56,7 +56,6 @@ double exact_share_at_least(std::span<const double> differences, double threshol
   return std::ldexp(static_cast<double>(count), -static_cast<int>(differences.size()));
 }
 
-/// The sums of random sign patterns.
 std::vector<double> sampled_sums(std::span<const double> differences) {
   constexpr std::array<double, 2> kSign{-1.0, 1.0};
   RandomStream random(0, "sign flips");
@@ -71,17 +70,16 @@ std::vector<double> sampled_sums(std::span<const double> differences) {
   return sums;
 }
 
-/// Their distances from zero.
 std::vector<double> sampled_distances(std::span<const double> differences) {
   std::vector<double> distances = sampled_sums(differences);
   for (double& distance : distances) distance = std::abs(distance);
   return distances;
 }
 
-double share_at_least(const std::vector<double>& drawn, double threshold) {
-  const auto as_far =
+double share_of_draws_at_least(const std::vector<double>& drawn, double threshold) {
+  const auto as_extreme =
       std::count_if(drawn.begin(), drawn.end(), [&](double one) { return one >= threshold; });
-  return p_of_draws(static_cast<double>(as_far), static_cast<double>(drawn.size()));
+  return p_of_draws(static_cast<double>(as_extreme), static_cast<double>(drawn.size()));
 }
 
 /// The largest p of any distance that does not exceed the level.
@@ -102,27 +100,28 @@ double sampled_attainable(std::span<const double> differences, double level, dou
 /// Two-sided p of a sum whose distance from zero is `threshold`.
 double two_sided_p(std::span<const double> differences, double threshold) {
   if (differences.size() > kExactSignFlips) {
-    return share_at_least(sampled_distances(differences), threshold);
+    return share_of_draws_at_least(sampled_distances(differences), threshold);
   }
   return 2.0 * exact_share_at_least(differences, threshold);
 }
 
 /// One-sided p of a sum of `threshold`.
 double one_sided_p(std::span<const double> differences, double threshold) {
-  return differences.size() > kExactSignFlips ? share_at_least(sampled_sums(differences), threshold)
-                                              : exact_share_at_least(differences, threshold);
+  return differences.size() > kExactSignFlips
+             ? share_of_draws_at_least(sampled_sums(differences), threshold)
+             : exact_share_at_least(differences, threshold);
 }
 
 /// The largest possible sum.
-double total_size(std::span<const double> differences) {
+double largest_sum(std::span<const double> differences) {
   require_finite(differences, "a sign-flip test");
-  double size = 0.0;
-  for (const double difference : differences) size += std::abs(difference);
-  return size;
+  double max_sum = 0.0;
+  for (const double difference : differences) max_sum += std::abs(difference);
+  return max_sum;
 }
 
-/// The sums over strata from which the estimate and its variance follow, in the letters of Robins,
-/// Breslow and Greenland.
+/// The sums over strata that give the estimate and its variance, in the notation of Robins, Breslow
+/// and Greenland.
 struct StrataSums {
   double r = 0.0, s = 0.0, pr = 0.0, ps_qr = 0.0, qs = 0.0;
 
@@ -133,13 +132,13 @@ struct StrataSums {
     const double second_wrong = second.n - second.correct;
     const double p = (first.correct + second_wrong) / n;
     const double q = (first_wrong + second.correct) / n;
-    const double here_r = first.correct * second_wrong / n;
-    const double here_s = first_wrong * second.correct / n;
-    r += here_r;
-    s += here_s;
-    pr += p * here_r;
-    ps_qr += p * here_s + q * here_r;
-    qs += q * here_s;
+    const double stratum_r = first.correct * second_wrong / n;
+    const double stratum_s = first_wrong * second.correct / n;
+    r += stratum_r;
+    s += stratum_s;
+    pr += p * stratum_r;
+    ps_qr += p * stratum_s + q * stratum_r;
+    qs += q * stratum_s;
   }
 
   [[nodiscard]] double variance_of_log() const {
@@ -148,36 +147,35 @@ struct StrataSums {
 };
 
 /// The indices of p values in ascending order.
-std::vector<std::size_t> rising_order(std::span<const double> p_values) {
+std::vector<std::size_t> ascending_order(std::span<const double> p_values) {
   for (const double p : p_values) {
     if (!(p >= 0.0 && p <= 1.0)) throw std::invalid_argument("a p must be in [0, 1]");
   }
-  std::vector<std::size_t> rising(p_values.size());
-  std::iota(rising.begin(), rising.end(), std::size_t{0});
-  std::sort(rising.begin(), rising.end(),
+  std::vector<std::size_t> ascending(p_values.size());
+  std::iota(ascending.begin(), ascending.end(), std::size_t{0});
+  std::sort(ascending.begin(), ascending.end(),
             [&](std::size_t a, std::size_t b) { return p_values[a] < p_values[b]; });
-  return rising;
+  return ascending;
 }
 
 using Occasions = std::span<const std::vector<bool>>;
 using RightByMethod = std::vector<std::int64_t>;
 
-void require_as_long(Occasions occasions, std::size_t methods) {
+void require_length(Occasions occasions, std::size_t methods) {
   for (const std::vector<bool>& occasion : occasions) {
     if (occasion.size() != methods) {
-      throw std::invalid_argument(
-          "Cochran's Q needs an answer with every method on every occasion");
+      throw std::invalid_argument("Cochran's Q needs one answer per method on every occasion");
     }
   }
 }
 
-std::int64_t right_on(const std::vector<bool>& occasion) {
+std::int64_t right_count(const std::vector<bool>& occasion) {
   return std::count(occasion.begin(), occasion.end(), true);
 }
 
 bool methods_differ(Occasions occasions) {
   return std::any_of(occasions.begin(), occasions.end(), [](const std::vector<bool>& occasion) {
-    const std::int64_t right = right_on(occasion);
+    const std::int64_t right = right_count(occasion);
     return right > 0 && right < static_cast<std::int64_t>(occasion.size());
   });
 }
@@ -194,13 +192,14 @@ std::int64_t sum_of_squares(const RightByMethod& right) {
   return std::inner_product(right.begin(), right.end(), right.begin(), std::int64_t{0});
 }
 
-/// Exchanges the methods within every participant.
-/// \return the sum of squares that results
-std::int64_t exchanged(std::vector<RightByMethod>& participants, RandomStream& random) {
+/// Permutes the methods within every participant.
+/// \return the resulting sum of squares
+std::int64_t permuted_sum_of_squares(std::vector<RightByMethod>& participants,
+                                     RandomStream& random) {
   RightByMethod right(participants.front().size());
-  for (RightByMethod& mine : participants) {
-    shuffle(std::span(mine), random);
-    for (std::size_t j = 0; j < right.size(); ++j) right[j] += mine[j];
+  for (RightByMethod& person_counts : participants) {
+    shuffle(std::span(person_counts), random);
+    for (std::size_t j = 0; j < right.size(); ++j) right[j] += person_counts[j];
   }
   return sum_of_squares(right);
 }
@@ -231,39 +230,39 @@ MethodComparison compare_methods(std::span<const PairedAccuracy> participants, s
 
 std::optional<double> sign_flip_p(std::span<const double> differences, Sides sides) {
   if (differences.empty()) return std::nullopt;
-  const double size = total_size(differences);
+  const double max_sum = largest_sum(differences);
   const double sum = std::accumulate(differences.begin(), differences.end(), 0.0);
   // Differences of proportions often tie; rounding must not break a tie.
-  if (sides == Sides::one) return one_sided_p(differences, sum - kTie * size);
-  const double threshold = std::abs(sum) - kTie * size;
+  if (sides == Sides::one) return one_sided_p(differences, sum - kTie * max_sum);
+  const double threshold = std::abs(sum) - kTie * max_sum;
   if (threshold <= 0.0) return 1.0;
   return two_sided_p(differences, threshold);
 }
 
-double sign_flip_least(std::span<const double> differences, Sides sides) {
-  const double tie = kTie * total_size(differences);
-  const auto free = std::ranges::count_if(
+double sign_flip_min_p(std::span<const double> differences, Sides sides) {
+  const double tie = kTie * largest_sum(differences);
+  const auto nonzero = std::ranges::count_if(
       differences, [tie](double difference) { return std::abs(difference) > tie; });
-  if (free == 0) return 1.0;
+  if (nonzero == 0) return 1.0;
   if (differences.size() > kExactSignFlips) {
     return p_of_draws(0.0, static_cast<double>(kSampledPatterns));
   }
-  return std::ldexp(sides == Sides::one ? 1.0 : 2.0, -static_cast<int>(free));
+  return std::ldexp(sides == Sides::one ? 1.0 : 2.0, -static_cast<int>(nonzero));
 }
 
 double sign_flip_attainable(std::span<const double> differences, double level) {
-  const double size = total_size(differences);
-  if (size > 0.0 && differences.size() > kExactSignFlips) {
-    return sampled_attainable(differences, level, kTie * size);
+  const double max_sum = largest_sum(differences);
+  if (max_sum > 0.0 && differences.size() > kExactSignFlips) {
+    return sampled_attainable(differences, level, kTie * max_sum);
   }
-  double enough = size * (1.0 - kTie);
-  if (size == 0.0 || two_sided_p(differences, enough) > level) return 0.0;
-  double too_little = 0.0;
-  while (enough - too_little > kTie * size) {
-    const double middle = 0.5 * (enough + too_little);
-    (two_sided_p(differences, middle) <= level ? enough : too_little) = middle;
+  double rejected = max_sum * (1.0 - kTie);
+  if (max_sum == 0.0 || two_sided_p(differences, rejected) > level) return 0.0;
+  double retained = 0.0;
+  while (rejected - retained > kTie * max_sum) {
+    const double middle = 0.5 * (rejected + retained);
+    (two_sided_p(differences, middle) <= level ? rejected : retained) = middle;
   }
-  return two_sided_p(differences, enough);
+  return two_sided_p(differences, rejected);
 }
 
 std::optional<OddsRatio> mantel_haenszel(
@@ -289,9 +288,9 @@ std::optional<Interval> odds_ratio_bootstrap(
   for (const auto& [first, second] : participants) {
     require_possible(first);
     require_possible(second);
-    StrataSums own;
-    own.add(first, second);
-    parts.push_back({own.r, own.s});
+    StrataSums sums;
+    sums.add(first, second);
+    parts.push_back({sums.r, sums.s});
   }
   return bootstrap_ratio(parts, index, draws, level);
 }
@@ -303,29 +302,29 @@ double mcnemar_mid_p(int first_only, int second_only) {
   const int pairs = first_only + second_only;
   if (pairs == 0) return 1.0;
   const boost::math::binomial_distribution<> half(pairs, 0.5);
-  const int fewer = std::min(first_only, second_only);
-  const double as_extreme = boost::math::pdf(half, fewer);
-  if (first_only == second_only) return 1.0 - 0.5 * as_extreme;  // this outcome counts once
-  return 2.0 * boost::math::cdf(half, fewer) - as_extreme;
+  const int smaller_count = std::min(first_only, second_only);
+  const double tie_probability = boost::math::pdf(half, smaller_count);
+  if (first_only == second_only) return 1.0 - 0.5 * tie_probability;  // this outcome counts once
+  return 2.0 * boost::math::cdf(half, smaller_count) - tie_probability;
 }
 
 std::optional<CochranQ> cochran_q(Occasions occasions) {
   if (occasions.empty()) return std::nullopt;
   const std::size_t methods = occasions.front().size();
-  require_as_long(occasions, methods);
+  require_length(occasions, methods);
   if (methods < 2 || !methods_differ(occasions)) return std::nullopt;
   const RightByMethod right = right_by_method(occasions, methods);
-  const std::int64_t all = std::accumulate(right.begin(), right.end(), std::int64_t{0});
+  const std::int64_t total = std::accumulate(right.begin(), right.end(), std::int64_t{0});
   std::int64_t squares_of_occasions = 0;
   for (const std::vector<bool>& occasion : occasions) {
-    squares_of_occasions += right_on(occasion) * right_on(occasion);
+    squares_of_occasions += right_count(occasion) * right_count(occasion);
   }
   const auto k = static_cast<std::int64_t>(methods);
-  const auto between = static_cast<double>(k * sum_of_squares(right) - all * all);
+  const auto between = static_cast<double>(k * sum_of_squares(right) - total * total);
   CochranQ result;
   result.degrees_of_freedom = static_cast<int>(k - 1);
   result.q =
-      result.degrees_of_freedom * between / static_cast<double>(k * all - squares_of_occasions);
+      result.degrees_of_freedom * between / static_cast<double>(k * total - squares_of_occasions);
   const boost::math::chi_squared_distribution<> chi_squared(result.degrees_of_freedom);
   result.p = boost::math::cdf(boost::math::complement(chi_squared, result.q));
   return result;
@@ -337,50 +336,50 @@ std::optional<double> cochran_q_permuted_p(
   if (deals < 1) throw std::invalid_argument("a permutation test needs at least one deal");
   std::optional<std::size_t> methods;
   std::vector<RightByMethod> participants;
-  bool differ = false;
+  bool any_difference = false;
   for (const std::vector<std::vector<bool>>& occasions : by_participant) {
     if (occasions.empty()) continue;
     if (!methods) methods = occasions.front().size();
-    require_as_long(occasions, *methods);
+    require_length(occasions, *methods);
     participants.push_back(right_by_method(occasions, *methods));
-    differ = differ || methods_differ(occasions);
+    any_difference = any_difference || methods_differ(occasions);
   }
-  if (!methods || *methods < 2 || !differ) return std::nullopt;
+  if (!methods || *methods < 2 || !any_difference) return std::nullopt;
   // Exchanging methods changes only one term of Q, the sum of the methods' squares.
   RightByMethod observed(*methods);
-  for (const RightByMethod& mine : participants) {
-    for (std::size_t j = 0; j < *methods; ++j) observed[j] += mine[j];
+  for (const RightByMethod& person_counts : participants) {
+    for (std::size_t j = 0; j < *methods; ++j) observed[j] += person_counts[j];
   }
   const std::int64_t threshold = sum_of_squares(observed);
   RandomStream random(0, "Cochran's Q", index);
-  int as_far = 0;
+  int as_extreme = 0;
   for (int deal = 0; deal < deals; ++deal) {
-    if (exchanged(participants, random) >= threshold) ++as_far;
+    if (permuted_sum_of_squares(participants, random) >= threshold) ++as_extreme;
   }
-  return p_of_draws(as_far, deals);
+  return p_of_draws(as_extreme, deals);
 }
 
 std::vector<double> holm_adjusted(std::span<const double> p_values) {
-  const std::vector<std::size_t> rising = rising_order(p_values);
+  const std::vector<std::size_t> ascending = ascending_order(p_values);
   std::vector<double> adjusted(p_values.size());
-  double so_far = 0.0;
-  for (std::size_t rank = 0; rank < rising.size(); ++rank) {
-    const auto hypotheses_left = static_cast<double>(rising.size() - rank);
-    so_far = std::max(so_far, std::min(1.0, hypotheses_left * p_values[rising[rank]]));
-    adjusted[rising[rank]] = so_far;
+  double largest = 0.0;
+  for (std::size_t rank = 0; rank < ascending.size(); ++rank) {
+    const auto hypotheses_left = static_cast<double>(ascending.size() - rank);
+    largest = std::max(largest, std::min(1.0, hypotheses_left * p_values[ascending[rank]]));
+    adjusted[ascending[rank]] = largest;
   }
   return adjusted;
 }
 
 std::vector<double> benjamini_hochberg_adjusted(std::span<const double> p_values) {
-  const std::vector<std::size_t> rising = rising_order(p_values);
-  const auto hypotheses = static_cast<double>(rising.size());
+  const std::vector<std::size_t> ascending = ascending_order(p_values);
+  const auto hypotheses = static_cast<double>(ascending.size());
   std::vector<double> adjusted(p_values.size());
-  double so_far = 1.0;
-  for (std::size_t rank = rising.size(); rank > 0; --rank) {
-    const std::size_t place = rising[rank - 1];
-    so_far = std::min(so_far, hypotheses * p_values[place] / static_cast<double>(rank));
-    adjusted[place] = so_far;
+  double smallest = 1.0;
+  for (std::size_t rank = ascending.size(); rank > 0; --rank) {
+    const std::size_t place = ascending[rank - 1];
+    smallest = std::min(smallest, hypotheses * p_values[place] / static_cast<double>(rank));
+    adjusted[place] = smallest;
   }
   return adjusted;
 }

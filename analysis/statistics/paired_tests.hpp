@@ -1,8 +1,8 @@
 /// \file Tests of methods that the same participants felt, and the size of their difference. Two
-/// methods: sign flips, the common odds ratio, and McNemar's test where each participant gave one
-/// pair of answers. Three methods or more: Cochran's Q. Several tests at once: Holm's adjustment.
-/// Sources: docs/statistics.md, "Two methods", "Odds ratio", "Pairs", "Three methods or more" and
-/// "Several tests".
+/// methods: sign flips, the common odds ratio, and McNemar's test of one pair of answers per
+/// participant. Three methods or more: Cochran's Q. Several tests: the adjustments of Holm and of
+/// Benjamini and Hochberg. Sources: docs/statistics.md, "Two methods", "Odds ratio", "Pairs",
+/// "Three methods or more" and "Several tests".
 #pragma once
 
 #include "analysis/statistics/cluster_bootstrap.hpp"
@@ -23,7 +23,7 @@ struct PairedAccuracy {
   double second = 0.0;
 };
 
-/// How much better the first method is than the second.
+/// The advantage of the first method over the second.
 struct MethodComparison {
   int participants = 0;
   std::optional<double> difference;       ///< mean over participants of first minus second
@@ -33,7 +33,7 @@ struct MethodComparison {
   std::optional<Interval> bootstrap{};    ///< bootstrap_mean of the differences
   std::optional<TStatistic> statistic{};  ///< of the differences
 
-  /// As MeanEstimate::known_interval.
+  /// See MeanEstimate::known_interval.
   [[nodiscard]] std::optional<Interval> known_interval() const noexcept {
     return participants > 1 && interval.low < interval.high ? std::optional(interval)
                                                             : std::nullopt;
@@ -59,29 +59,29 @@ inline constexpr int kExactSignFlips = 32;
 /// participants it is (b + 1) / (m + 1) over m random patterns from a fixed seed (Phipson, Smyth
 /// 2010).
 /// \param differences  one per participant, finite
-/// \return in (0, 1], never below 2 * 2^-n, or 2^-n if one-sided; nothing without differences
+/// \return at least 2 * 2^-n, or 2^-n if one-sided, at most 1; nothing without differences
 /// \throws std::invalid_argument if a difference is not finite
 [[nodiscard]] std::optional<double> sign_flip_p(std::span<const double> differences,
                                                 Sides sides = Sides::two);
 
-/// The smallest p that sign_flip_p can return for these differences, whatever their signs.
+/// The smallest p that sign_flip_p can return for differences of these sizes.
 /// \return 1 if all differences are 0
-[[nodiscard]] double sign_flip_least(std::span<const double> differences, Sides sides = Sides::two);
+[[nodiscard]] double sign_flip_min_p(std::span<const double> differences, Sides sides = Sides::two);
 
 /// The largest attainable p within the level, over all signs of these differences: the test's true
-/// rejection rate if the methods do not differ. 0 if it cannot reject. Cost: about thirty times
-/// that of sign_flip_p.
+/// rejection rate if the methods do not differ; 0 if it cannot reject. Costs about thirty times as
+/// much as sign_flip_p.
 /// \throws std::invalid_argument if a difference is not finite
 [[nodiscard]] double sign_flip_attainable(std::span<const double> differences, double level);
 
 struct OddsRatio {
   double estimate = 1.0;
   Interval interval;  ///< by Robins, Breslow and Greenland 1986, as if trials were independent
-  std::optional<Interval> bootstrap{};  ///< odds_ratio_bootstrap: over participants
+  std::optional<Interval> bootstrap{};  ///< odds_ratio_bootstrap
 };
 
-/// The odds of a right answer with the first method over those with the second: Mantel and
-/// Haenszel's (1959) common odds ratio, with one stratum per participant.
+/// The odds of a right answer with the first method, divided by the odds with the second: Mantel
+/// and Haenszel's (1959) common odds ratio, with one stratum per participant.
 /// \param participants  each participant's trials with the first and the second method
 /// \return nothing if the ratio is 0 or infinite
 /// \throws std::invalid_argument if a proportion is impossible, or the level is not in (0, 1)
@@ -99,8 +99,8 @@ struct OddsRatio {
     int draws = kBootstrapDraws, double level = kConfidenceLevel);
 
 /// McNemar's two-sided mid-p test of one pair of right-or-wrong answers per participant: the
-/// probability of more extreme outcomes plus half that of equally extreme ones. Source: Fagerland,
-/// Lydersen, Laake 2013.
+/// probability of more extreme outcomes plus half the probability of equally extreme outcomes.
+/// Source: Fagerland, Lydersen, Laake 2013.
 /// \param first_only  pairs in which only the first answer is right, >= 0
 /// \param second_only  pairs in which only the second answer is right, >= 0
 /// \return 1 if no pair disagrees
@@ -114,15 +114,15 @@ struct CochranQ {
 };
 
 /// Cochran's (1950) test of several methods that are right or wrong on the same occasions.
-/// \param occasions  for each, whether the answer with every method was right; all of equal length
-/// \return nothing if there are fewer than two methods, or no occasion on which methods differ
+/// \param occasions  for each occasion and method, whether the answer was right; of equal lengths
+/// \return nothing if there are fewer than two methods, or methods differ on no occasion
 /// \throws std::invalid_argument if lengths differ
 [[nodiscard]] std::optional<CochranQ> cochran_q(std::span<const std::vector<bool>> occasions);
 
-/// The p of the same statistic by permuting the methods within whole participants, which is valid
-/// although a participant's occasions are dependent. Monte Carlo, (b + 1) / (m + 1), fixed seed.
+/// The p of the same statistic by permuting the methods within participants, which remains valid if
+/// a participant's occasions are dependent. Monte Carlo, (b + 1) / (deals + 1), fixed seed.
 /// \param by_participant  each participant's occasions
-/// \param deals  m, >= 1
+/// \param deals  random permutations, >= 1
 /// \param index  chooses the stream of random numbers
 /// \return nothing where cochran_q of all occasions returns nothing
 /// \throws std::invalid_argument if lengths differ or deals < 1
@@ -136,8 +136,8 @@ struct CochranQ {
 /// \throws std::invalid_argument if a p is outside [0, 1]
 [[nodiscard]] std::vector<double> holm_adjusted(std::span<const double> p_values);
 
-/// Benjamini and Hochberg's (1995) adjustment, which controls the false discovery rate, and so also
-/// the rate of any rejection if all hypotheses are true. Arguments, result and errors are those of
+/// Benjamini and Hochberg's (1995) adjustment, which controls the false discovery rate, and so the
+/// family-wise error rate if all null hypotheses are true. Arguments, result and errors: see
 /// holm_adjusted.
 [[nodiscard]] std::vector<double> benjamini_hochberg_adjusted(std::span<const double> p_values);
 

@@ -1,4 +1,4 @@
-/// \file How many people would pass a test like the one that each participant took. Sources:
+/// \file Prevalence: the share of the population that would pass each participant's test. Sources:
 /// docs/statistics.md, "Prevalence"; Ince, Paton, Kay, Schyns 2021.
 #pragma once
 
@@ -13,17 +13,17 @@ namespace touchtrial::analysis {
 /// them.
 struct Prevalence {
   int participants = 0;
-  int passed = 0;         ///< participants whose own p is within the level
-  double level = 0.0;     ///< the mean of the levels that the participants' tests attain
+  int passed = 0;         ///< participants whose p is within the level
+  double level = 0.0;     ///< the mean attained level of the participants' tests
   double estimate = 0.0;  ///< posterior mode under a uniform prior
   Interval interval;      ///< highest posterior density
 };
 
-/// The posterior of the prevalence g if a participant passes with probability a + (1 - a) g. The
-/// probability of passing is then Beta(passed + 1, failed + 1), cut to [a, 1].
-/// \param tests  passed, of all
+/// Estimates the prevalence g if a participant passes with probability a + (1 - a) g. The posterior
+/// of the probability of passing is then Beta(passed + 1, failed + 1), truncated to [a, 1].
+/// \param tests  `correct` counts the passed tests
 /// \param level  a: the mean probability of passing by chance, in [0, 1)
-/// \param share  of the posterior in the interval, in (0, 1)
+/// \param share  the posterior probability of the interval, in (0, 1)
 /// \return nothing without participants
 /// \throws std::invalid_argument if an argument is out of range
 [[nodiscard]] std::optional<Prevalence> prevalence_of(Proportion tests, double level,

@@ -10,7 +10,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-void require_arguments_of_interval(Proportion proportion, double level) {
+void require_interval_arguments(Proportion proportion, double level) {
   require_possible(proportion);
   require_level(level);
 }
@@ -27,21 +27,21 @@ std::optional<double> Proportion::share() const noexcept {
 }
 
 Interval wilson_interval(Proportion proportion, double level) {
-  require_arguments_of_interval(proportion, level);
+  require_interval_arguments(proportion, level);
   if (proportion.n == 0) return {};
   const double n = proportion.n;
   const double p = proportion.correct / n;
   const double z = boost::math::quantile(boost::math::normal_distribution<>(), 0.5 + level / 2.0);
   const double scale = 1.0 + z * z / n;
   const double centre = (p + z * z / (2.0 * n)) / scale;
-  const double half = z * std::sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n)) / scale;
+  const double half_width = z * std::sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n)) / scale;
   // At 0 and n, centre and half-width differ only by rounding.
-  return {proportion.correct == 0 ? 0.0 : centre - half,
-          proportion.correct == proportion.n ? 1.0 : centre + half};
+  return {proportion.correct == 0 ? 0.0 : centre - half_width,
+          proportion.correct == proportion.n ? 1.0 : centre + half_width};
 }
 
 Interval clopper_pearson_interval(Proportion proportion, double level) {
-  require_arguments_of_interval(proportion, level);
+  require_interval_arguments(proportion, level);
   if (proportion.n == 0) return {};
   const double tail = (1.0 - level) / 2.0;
   const double correct = proportion.correct;
@@ -51,7 +51,7 @@ Interval clopper_pearson_interval(Proportion proportion, double level) {
 }
 
 Interval jeffreys_interval(Proportion proportion, double level) {
-  require_arguments_of_interval(proportion, level);
+  require_interval_arguments(proportion, level);
   if (proportion.n == 0) return {};
   const double tail = (1.0 - level) / 2.0;
   const double a = proportion.correct + 0.5;

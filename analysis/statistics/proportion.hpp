@@ -16,7 +16,7 @@ struct Interval {
   friend bool operator==(const Interval&, const Interval&) = default;
 };
 
-/// `correct` of `n`; 0 <= correct <= n.
+/// `correct` of `n` trials; 0 <= correct <= n.
 struct Proportion {
   int n = 0;
   int correct = 0;
@@ -37,19 +37,19 @@ struct Proportion {
   friend bool operator==(const Proportion&, const Proportion&) = default;
 };
 
-/// Wilson's score interval: covers close to its level on average, for independent trials.
+/// Wilson's score interval. For independent trials, its mean coverage is close to the level.
 /// \param level  in (0, 1)
 /// \return within [0, 1]; [0, 1] if n is 0
 /// \throws std::invalid_argument if not 0 <= correct <= n, or the level is not in (0, 1)
 [[nodiscard]] Interval wilson_interval(Proportion proportion, double level = kConfidenceLevel);
 
-/// Clopper and Pearson's exact interval: never covers less than its level, for independent trials.
-/// Arguments, result and errors are those of wilson_interval.
+/// Clopper and Pearson's exact interval. For independent trials, its coverage is at least the
+/// level. Arguments, result and errors: see wilson_interval.
 [[nodiscard]] Interval clopper_pearson_interval(Proportion proportion,
                                                 double level = kConfidenceLevel);
 
-/// Jeffreys' interval: quantiles of Beta(correct + 1/2, n - correct + 1/2), with 0 where nothing
-/// and 1 where everything is correct. Arguments, result and errors are those of wilson_interval.
+/// Jeffreys' interval: quantiles of Beta(correct + 1/2, n - correct + 1/2). The low end is 0 at 0
+/// correct, the high end 1 at n correct. Arguments, result and errors: see wilson_interval.
 [[nodiscard]] Interval jeffreys_interval(Proportion proportion, double level = kConfidenceLevel);
 
 }  // namespace touchtrial::analysis

@@ -13,10 +13,10 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// No share of answers needs a larger d'.
-constexpr double kMaxDistance = 50.0;
+/// Larger d' cannot be distinguished from shares of answers.
+constexpr double kMaxDPrimeOfShares = 50.0;
 
-double area_below(double z) {
+double normal_cdf(double z) {
   return boost::math::cdf(boost::math::normal_distribution<>(), z);
 }
 
@@ -25,24 +25,24 @@ double z_of(double share) {
 }
 
 void require_shares(const SameDifferent& shares) {
-  const auto inside = [](double share) { return share > 0.0 && share < 1.0; };
-  if (!inside(shares.hits) || !inside(shares.false_alarms)) {
+  const auto is_in_range = [](double share) { return share > 0.0 && share < 1.0; };
+  if (!is_in_range(shares.hits) || !is_in_range(shares.false_alarms)) {
     throw std::invalid_argument("shares of \"different\" must be in (0, 1)");
   }
 }
 
-/// The argument at which a function that rises from 0 reaches `share`.
+/// The argument at which a function that increases from 0 reaches `share`.
 template <typename Rising>
-double distance_with(const Rising& share_of, double share) {
+double argument_at(const Rising& share_of, double share) {
   std::uintmax_t most_steps = 200;
   const auto excess = [&](double d) { return share_of(d) - share; };
-  const double most = excess(kMaxDistance);
-  if (most <= 0.0) return kMaxDistance;
-  const double least = excess(0.0);
-  if (least >= 0.0) return 0.0;
-  const std::pair<double, double> bracket =
-      boost::math::tools::toms748_solve(excess, 0.0, kMaxDistance, least, most,
-                                        boost::math::tools::eps_tolerance<double>(44), most_steps);
+  const double excess_at_max = excess(kMaxDPrimeOfShares);
+  if (excess_at_max <= 0.0) return kMaxDPrimeOfShares;
+  const double excess_at_zero = excess(0.0);
+  if (excess_at_zero >= 0.0) return 0.0;
+  const std::pair<double, double> bracket = boost::math::tools::toms748_solve(
+      excess, 0.0, kMaxDPrimeOfShares, excess_at_zero, excess_at_max,
+      boost::math::tools::eps_tolerance<double>(44), most_steps);
   return std::midpoint(bracket.first, bracket.second);
 }
 
@@ -53,9 +53,9 @@ std::optional<SameDifferentFit> differencing_d_prime(const SameDifferent& shares
   if (shares.hits < shares.false_alarms) return std::nullopt;
   const double k = -std::numbers::sqrt2 * z_of(0.5 * shares.false_alarms);
   const auto hits = [&](double d) {
-    return area_below((d - k) / std::numbers::sqrt2) + area_below((-d - k) / std::numbers::sqrt2);
+    return normal_cdf((d - k) / std::numbers::sqrt2) + normal_cdf((-d - k) / std::numbers::sqrt2);
   };
-  return SameDifferentFit{distance_with(hits, shares.hits), k};
+  return SameDifferentFit{argument_at(hits, shares.hits), k};
 }
 
 std::optional<SameDifferentFit> independent_d_prime(const SameDifferent& shares) {
@@ -65,8 +65,8 @@ std::optional<SameDifferentFit> independent_d_prime(const SameDifferent& shares)
   const double z_false = z_of(shares.false_alarms);
   // 2 Phi(x) - 1 = erf(x / sqrt 2), without subtraction.
   const double above_chance = std::erf(0.5 * (z_hits - z_false) / std::numbers::sqrt2);
-  const double one = 0.5 * (1.0 + std::sqrt(above_chance));
-  const double d = one < 1.0 ? 2.0 * z_of(one) : kMaxDistance;
+  const double single_correct = 0.5 * (1.0 + std::sqrt(above_chance));
+  const double d = single_correct < 1.0 ? 2.0 * z_of(single_correct) : kMaxDPrimeOfShares;
   return SameDifferentFit{d, -0.5 * (z_hits + z_false)};
 }
 

@@ -14,8 +14,8 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// The sum of squared distances of participants' shares, weighted as if their probabilities had
-/// some variance.
+/// The weighted sum of squares of participants' shares, for an assumed variance of their
+/// probabilities.
 class CochransQ {
  public:
   explicit CochransQ(std::span<const Proportion> participants) {
@@ -32,11 +32,11 @@ class CochransQ {
   }
 
   [[nodiscard]] std::size_t participants() const { return shares_.size(); }
-  /// The variance of probabilities that are only 0 or 1.
+  /// The variance if all probabilities were 0 or 1.
   [[nodiscard]] double max_variance() const { return max_variance_; }
 
-  /// Squared distances from the weighted mean, divided by the variances; falls as `variance` grows.
-  [[nodiscard]] double at(double variance) const {
+  /// Squared distances from the weighted mean, divided by variances; decreases with `variance`.
+  [[nodiscard]] double sum_of_squares(double variance) const {
     double weights = 0.0;
     double sum = 0.0;
     double squares = 0.0;
@@ -50,13 +50,13 @@ class CochransQ {
     return squares - sum * sum / weights;
   }
 
-  /// The variance at which the deviation is `wanted`, within [0, largest].
-  [[nodiscard]] double variance_at(double wanted) const {
-    if (at(0.0) <= wanted) return 0.0;
-    if (at(max_variance_) >= wanted) return max_variance_;
+  /// The variance at which the sum of squares is `target`, clamped to [0, max_variance()].
+  [[nodiscard]] double variance_at(double target) const {
+    if (sum_of_squares(0.0) <= target) return 0.0;
+    if (sum_of_squares(max_variance_) >= target) return max_variance_;
     std::uintmax_t steps = 200;
     const auto [a, b] = boost::math::tools::toms748_solve(
-        [&](double variance) { return at(variance) - wanted; }, 0.0, max_variance_,
+        [&](double variance) { return sum_of_squares(variance) - target; }, 0.0, max_variance_,
         boost::math::tools::eps_tolerance<double>(50), steps);
     return 0.5 * (a + b);
   }
@@ -75,7 +75,7 @@ std::optional<Spread> spread_of(std::span<const Proportion> participants, double
   if (q.participants() < 2 || q.max_variance() <= 0.0) return std::nullopt;
   const auto freedom = static_cast<double>(q.participants() - 1);
   const boost::math::chi_squared_distribution<> chi_squared(freedom);
-  const auto spread = [&](double wanted) { return std::sqrt(q.variance_at(wanted)); };
+  const auto spread = [&](double target) { return std::sqrt(q.variance_at(target)); };
   const double tail = 0.5 * (1.0 - level);
   return Spread{
       spread(freedom),

@@ -13,7 +13,6 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// Means of strata with their precision.
 class StratumMeans {
  public:
   void add(double mean, double variance) {
@@ -21,25 +20,25 @@ class StratumMeans {
     variances_.push_back(variance);
   }
 
-  struct Weighted {
+  struct WeightedSums {
     double weights = 0.0;
     double mean = 0.0;
     double squares = 0.0;  ///< weighted squared distances from the mean
   };
 
-  /// \param between  variance of the strata's own means
-  [[nodiscard]] Weighted weighted(double between) const {
-    Weighted of;
+  /// \param between  variance of the true means of strata
+  [[nodiscard]] WeightedSums weighted_sums(double between) const {
+    WeightedSums result;
     for (std::size_t i = 0; i < means_.size(); ++i) {
       const double weight = 1.0 / (variances_[i] + between);
-      of.weights += weight;
-      of.mean += weight * means_[i];
+      result.weights += weight;
+      result.mean += weight * means_[i];
     }
-    of.mean /= of.weights;
+    result.mean /= result.weights;
     for (std::size_t i = 0; i < means_.size(); ++i) {
-      of.squares += std::pow(means_[i] - of.mean, 2) / (variances_[i] + between);
+      result.squares += std::pow(means_[i] - result.mean, 2) / (variances_[i] + between);
     }
-    return of;
+    return result;
   }
 
   [[nodiscard]] double degrees() const { return static_cast<double>(means_.size()) - 1.0; }
@@ -47,12 +46,12 @@ class StratumMeans {
   /// Paule and Mandel's variance between strata, at which the weighted squares equal their
   /// expectation.
   [[nodiscard]] double between() const {
-    if (weighted(0.0).squares <= degrees()) return 0.0;
-    double most = std::pow(std::ranges::max(means_) - std::ranges::min(means_), 2);
-    while (weighted(most).squares > degrees()) most *= 2.0;
+    if (weighted_sums(0.0).squares <= degrees()) return 0.0;
+    double upper = std::pow(std::ranges::max(means_) - std::ranges::min(means_), 2);
+    while (weighted_sums(upper).squares > degrees()) upper *= 2.0;
     std::uintmax_t steps = 200;
     const auto [a, b] = boost::math::tools::toms748_solve(
-        [this](double variance) { return weighted(variance).squares - degrees(); }, 0.0, most,
+        [this](double variance) { return weighted_sums(variance).squares - degrees(); }, 0.0, upper,
         boost::math::tools::eps_tolerance<double>(50), steps);
     return 0.5 * (a + b);
   }
@@ -64,16 +63,16 @@ class StratumMeans {
 
 Interval t_interval(double mean, double error, double degrees, double level, Interval range) {
   const boost::math::students_t_distribution<> t(degrees);
-  const double reach = boost::math::quantile(t, 0.5 + level / 2.0) * error;
-  return {std::clamp(without_noise(mean - reach), range.low, range.high),
-          std::clamp(without_noise(mean + reach), range.low, range.high)};
+  const double half_width = boost::math::quantile(t, 0.5 + level / 2.0) * error;
+  return {std::clamp(without_noise(mean - half_width), range.low, range.high),
+          std::clamp(without_noise(mean + half_width), range.low, range.high)};
 }
 
 RandomStrata random_strata(const StratumMeans& means, double level, Interval range) {
   const double between = means.between();
-  const auto weighted = means.weighted(between);
-  const double error = std::sqrt(weighted.squares / (means.degrees() * weighted.weights));
-  return {weighted.mean, t_interval(weighted.mean, error, means.degrees(), level, range),
+  const auto sums = means.weighted_sums(between);
+  const double error = std::sqrt(sums.squares / (means.degrees() * sums.weights));
+  return {sums.mean, t_interval(sums.mean, error, means.degrees(), level, range),
           std::sqrt(between)};
 }
 
@@ -86,14 +85,14 @@ std::optional<StratifiedMean> stratified_mean(std::span<const std::vector<double
   double values = 0.0;
   double sum = 0.0;
   double squares = 0.0;
-  for (const std::vector<double>& own : strata) {
-    require_finite(own, "a mean over strata");
-    if (own.empty()) continue;
+  for (const std::vector<double>& stratum : strata) {
+    require_finite(stratum, "a mean over strata");
+    if (stratum.empty()) continue;
     ++result.strata;
-    const double mean = mean_of(own);
-    for (const double value : own) squares += (value - mean) * (value - mean);
-    values += static_cast<double>(own.size());
-    sum += mean * static_cast<double>(own.size());
+    const double mean = mean_of(stratum);
+    for (const double value : stratum) squares += (value - mean) * (value - mean);
+    values += static_cast<double>(stratum.size());
+    sum += mean * static_cast<double>(stratum.size());
   }
   if (result.strata < 2) return std::nullopt;
   result.mean = without_noise(sum / values);
@@ -104,8 +103,9 @@ std::optional<StratifiedMean> stratified_mean(std::span<const std::vector<double
   result.interval = t_interval(result.mean, std::sqrt(variance / values), degrees, level, range);
   if (result.strata < kMinRandomStrata) return result;
   StratumMeans means;
-  for (const std::vector<double>& own : strata) {
-    if (!own.empty()) means.add(mean_of(own), variance / static_cast<double>(own.size()));
+  for (const std::vector<double>& stratum : strata) {
+    if (!stratum.empty())
+      means.add(mean_of(stratum), variance / static_cast<double>(stratum.size()));
   }
   result.random = random_strata(means, level, range);
   return result;

@@ -16,37 +16,36 @@ namespace {
 
 using std::chrono::seconds;
 
-constexpr seconds kUnnoted{1};
+constexpr seconds kIgnoredClockStep{1};
 
 void add_clock_notes(std::vector<std::string>& notes, std::span<const record::Event> chain,
                      const std::string& name) {
   for (std::size_t i = 1; i < chain.size(); ++i) {
-    const auto before = chain[i - 1].at;
+    const auto previous = chain[i - 1].at;
     const auto at = chain[i].at;
     // As floating point: damaged times may lie further apart than an integer holds.
     const double back_s =
-        std::chrono::duration<double>(before).count() - std::chrono::duration<double>(at).count();
-    if (back_s <= static_cast<double>(kUnnoted.count())) continue;
+        std::chrono::duration<double>(previous).count() - std::chrono::duration<double>(at).count();
+    if (back_s <= static_cast<double>(kIgnoredClockStep.count())) continue;
     notes.push_back(
         fmt::format("{}, event {}: the clock was set back by {:.0f} s, from {} to {}; times around "
                     "it are uncertain",
-                    name, chain[i].sequence, back_s, utc_text(before), utc_text(at)));
+                    name, chain[i].sequence, back_s, utc_text(previous), utc_text(at)));
   }
 }
 
-/// Adds the moves of the second head file.
-void add_moves(std::vector<std::string>& notes, std::span<const record::Event> chain,
-               const std::string& name) {
-  std::optional<std::string> before;
+void add_head_file_moves(std::vector<std::string>& notes, std::span<const record::Event> chain,
+                         const std::string& name) {
+  std::optional<std::string> previous;
   for (const record::Event& event : chain) {
     if (event.kind != record::EventKind::heads_kept) continue;
-    const std::string also = record::body_of<record::HeadsBody>(event).also;
-    if (before) {
-      notes.push_back(
-          one_line(fmt::format("{}, event {}: from here on the second head file is {}", name,
-                               event.sequence, also.empty() ? "dropped" : "in " + also)));
+    const std::string second_file = record::body_of<record::HeadsBody>(event).also;
+    if (previous) {
+      notes.push_back(one_line(fmt::format("{}, event {}: from here on the second head file is {}",
+                                           name, event.sequence,
+                                           second_file.empty() ? "dropped" : "in " + second_file)));
     }
-    before = also;
+    previous = second_file;
   }
 }
 
@@ -68,7 +67,7 @@ std::vector<std::string> chain_notes(const record::StudyStore& store) {
   const auto add = [&](std::span<const record::Event> chain, const std::string& name) {
     if (has_clock) add_clock_notes(notes, chain, name);
     add_losses(notes, chain, name);
-    add_moves(notes, chain, name);
+    add_head_file_moves(notes, chain, name);
   };
   if (store.stations() == 0) add(store.events(0), "the file's chain");
   for (int station = 1; station <= store.stations(); ++station) {

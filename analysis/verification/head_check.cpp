@@ -17,29 +17,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// By the station's name.
 using StationChains = std::multimap<std::string, std::vector<record::Event>>;
 
-void add(std::string& text, const std::string& more) {
+void append_fault(std::string& text, const std::string& more) {
   text += (text.empty() ? "" : "; ") + one_line(more);
 }
 
-/// The head file of one station's database.
-/// \return what the collected study is missing from it; empty: nothing
+/// Compares the head file of one station's database with the collected chains.
+/// \return what the collected study is missing; empty: nothing
 std::string missing_from_station(const record::HeadReading& reading, const StationChains& chains) {
-  const record::HeadRecord& known = reading.record;
-  const auto found = std::ranges::find_if(
-      chains, [&](const auto& station) { return station.second.front().hash == known.database; });
+  const record::HeadRecord& head_record = reading.record;
+  const auto found = std::ranges::find_if(chains, [&](const auto& station) {
+    return station.second.front().hash == head_record.database;
+  });
   if (found == chains.end()) {
-    if (known.acknowledged == 0) return {};  // no sessions there yet
+    if (head_record.acknowledged == 0) return {};  // no sessions there yet
     return fmt::format("station {} is missing from the database; its head file {} has {}",
-                       known.station, reading.file.string(),
-                       counted(known.acknowledged, "acknowledged answer"));
+                       head_record.station, reading.file.string(),
+                       counted(head_record.acknowledged, "acknowledged answer"));
   }
   const auto& [name, chain] = *found;
-  const auto length = static_cast<std::size_t>(known.file.length);
+  const auto length = static_cast<std::size_t>(head_record.file.length);
   if (length == 0) return {};
-  if (length <= chain.size() && chain[length - 1].hash == known.file.hash) return {};
+  if (length <= chain.size() && chain[length - 1].hash == head_record.file.hash) return {};
   return fmt::format(
       "station {}'s chain has {} here, but its head file {} has {}: merge its database again", name,
       counted(std::ssize(chain), "event"), reading.file.string(), length);
@@ -61,39 +61,41 @@ std::string HeadCheck::words() const {
 }
 
 HeadCheck check_heads(const record::StudyStore& store, const fs::path& database,
-                      std::span<const fs::path> given) {
+                      std::span<const fs::path> extra_heads) {
   HeadCheck check;
   try {
-    std::vector<record::KnownHead> heads = record::known_heads(store, database);
-    std::ptrdiff_t stand_ins = 0;
-    for (const fs::path& named : given) {
-      const fs::path file = fs::weakly_canonical(named);
-      const auto is_same = [&](const record::KnownHead& head) {
+    std::vector<record::ExpectedHead> heads = record::expected_heads(store, database);
+    std::ptrdiff_t copies = 0;
+    for (const fs::path& path : extra_heads) {
+      const fs::path file = fs::weakly_canonical(path);
+      const auto is_same = [&](const record::ExpectedHead& head) {
         return fs::weakly_canonical(head.file) == file;
       };
       if (std::ranges::any_of(heads, is_same)) continue;
       heads.push_back({file, record::HeadFile(file).reading(head_signers(store.commitment()))});
-      if (!heads.back().reading) throw FileError("there is no " + named.string());
-      ++stand_ins;
+      if (!heads.back().reading) throw FileError("there is no " + path.string());
+      ++copies;
     }
-    for (const record::KnownHead& head : heads) {
+    for (const record::ExpectedHead& head : heads) {
       if (!head.reading) continue;
       ++check.compared;
-      const record::HeadRecord& known = head.reading->record;
+      const record::HeadRecord& head_record = head.reading->record;
       if (!head.reading->damage.empty()) {
         check.notes.push_back(one_line(head.file.string() + ": " + head.reading->damage));
       }
-      if (!check.confirmed || known.file.length > check.confirmed->file.length)
-        check.confirmed = known;
-      const std::vector<record::Loss> missing = record::losses(known, store);
+      if (!check.confirmed || head_record.file.length > check.confirmed->file.length)
+        check.confirmed = head_record;
+      const std::vector<record::Loss> missing = record::losses(head_record, store);
       if (missing.empty()) continue;
-      add(check.missing, head.file.string() + ": " + listed(missing, "; ", &record::Loss::what));
+      append_fault(check.missing,
+                   head.file.string() + ": " + listed(missing, "; ", &record::Loss::what));
     }
-    std::erase_if(heads, [](const record::KnownHead& head) { return head.reading.has_value(); });
-    // A moved head file is replaced by its copy.
-    if (std::ssize(heads) <= stand_ins) return check;
-    check.missing_files = listed(
-        heads, " and ", [](const record::KnownHead& head) { return one_line(head.file.string()); });
+    std::erase_if(heads, [](const record::ExpectedHead& head) { return head.reading.has_value(); });
+    // Each extra file replaces one missing head file.
+    if (std::ssize(heads) <= copies) return check;
+    check.missing_files = listed(heads, " and ", [](const record::ExpectedHead& head) {
+      return one_line(head.file.string());
+    });
     check.missing_files += heads.size() == 1 ? " is gone" : " are gone";
     check.missing_files +=
         ", but the database refers to it; restore it, or give `touchtrial verify` a copy with "
@@ -101,46 +103,47 @@ HeadCheck check_heads(const record::StudyStore& store, const fs::path& database,
   } catch (const record::DamagedStore&) {
     throw;
   } catch (const Error& error) {
-    // A damaged chain cannot list the head files.
-    add(check.missing, error.what());
+    // For instance, a damaged chain does not list its head files.
+    append_fault(check.missing, error.what());
   }
   return check;
 }
 
 StationsCheck check_stations(const record::StudyStore& store,
                              const std::map<std::string, PublicKey>& signers,
-                             std::span<const fs::path> given) {
+                             std::span<const fs::path> extra_heads) {
   StationsCheck check;
   StationChains chains;
-  std::vector<PublicKey> trusted = {store.commitment().investigator};
+  std::vector<PublicKey> trusted_signers = {store.commitment().investigator};
   for (int station = 1; station <= store.stations(); ++station) {
     std::vector<record::Event> chain = store.station_chain(station);
     const auto identity = record::body_of<record::StudyCommitment>(chain.front()).station;
     chains.emplace(identity ? identity->name : std::to_string(station), std::move(chain));
   }
-  for (const auto& [name, signer] : signers) trusted.push_back(signer);
-  std::set<std::string> confirmed;
-  for (const fs::path& file : given) {
+  for (const auto& [name, signer] : signers) trusted_signers.push_back(signer);
+  std::set<std::string> confirmed_stations;
+  for (const fs::path& file : extra_heads) {
     try {
-      const auto reading = record::HeadFile(file).reading(trusted);
+      const auto reading = record::HeadFile(file).reading(trusted_signers);
       if (!reading) throw FileError("there is no " + file.string());
-      confirmed.insert(reading->record.station);
-      if (const std::string lack = missing_from_station(*reading, chains); !lack.empty()) {
-        add(check.missing, lack);
+      confirmed_stations.insert(reading->record.station);
+      if (const std::string missing = missing_from_station(*reading, chains); !missing.empty()) {
+        append_fault(check.missing, missing);
       }
     } catch (const FileError& error) {
-      add(check.missing, error.what());
+      append_fault(check.missing, error.what());
     }
   }
   for (const auto& [name, signer] : signers) {
-    if (confirmed.contains(name)) continue;
+    if (confirmed_stations.contains(name)) continue;
     const auto found = chains.find(name);
     if (found == chains.end()) {
-      add(check.absent, "station " + name);
+      append_fault(check.absent, "station " + name);
       continue;
     }
-    add(check.ends, fmt::format("station {} with event {} (head {})", name, found->second.size(),
-                                in_fours(to_hex(found->second.back().hash).substr(0, 16))));
+    append_fault(check.unchecked_ends,
+                 fmt::format("station {} with event {} (head {})", name, found->second.size(),
+                             in_groups_of_four(to_hex(found->second.back().hash).substr(0, 16))));
   }
   return check;
 }

@@ -16,40 +16,41 @@ namespace touchtrial::analysis {
 
 /// The result of comparing a database with its head files.
 struct HeadCheck {
-  /// Missing events, or why the database or a head file cannot be read; empty: none.
+  /// Missing events, or why the database or a head file cannot be read; empty: no fault.
   std::string missing;
-  /// Message about recorded head files that no longer exist; empty: none.
+  /// Recorded head files that no longer exist, with the remedy; empty: none.
   std::string missing_files;
-  int compared = 0;  ///< head files
-  /// The record of the head file with the longest chain: the database is confirmed up to there.
+  int compared = 0;  ///< number of head files
+  /// The record of the head file with the longest chain; it confirms the database up to its end.
   std::optional<record::HeadRecord> confirmed{};
   std::vector<std::string> notes{};  ///< remarks that are not faults
 
-  /// Both faults, joined; empty: there is none.
+  /// `missing` and `missing_files`, joined; empty: no fault.
   [[nodiscard]] std::string fault() const;
-  /// One line for a report: the head that was compared, or what is wrong.
+  /// One line for a report: the confirmed head, or the fault.
   [[nodiscard]] std::string words() const;
 };
 
-/// Compares a database with its head files: those beside it, and those that it records.
-/// \param given  further head files, which may replace missing ones
+/// Compares a database with the head files beside it and the head files that it records.
+/// \param extra_heads  further head files, which may replace missing ones
 /// \throws DamagedStore if the database cannot be read
 [[nodiscard]] HeadCheck check_heads(const record::StudyStore& store,
                                     const std::filesystem::path& database,
-                                    std::span<const std::filesystem::path> given = {});
+                                    std::span<const std::filesystem::path> extra_heads = {});
 
-/// The result of comparing a collected study's stations with the head files of their own databases.
+/// The result of comparing a collected study's stations with the head files of their databases.
 struct StationsCheck {
-  std::string missing;  ///< missing stations or chain ends that a head file has; empty: none
-  std::string absent;   ///< other stations of the key that are absent; empty: none
-  std::string ends;     ///< chain ends of stations whose head file was not given; empty: none
+  std::string missing;  ///< stations or chain ends that a head file proves missing; empty: none
+  std::string absent;   ///< absent stations without a head file in `extra_heads`; empty: none
+  std::string
+      unchecked_ends;  ///< chain ends of stations without a head file in `extra_heads`; empty: none
 };
 
-/// \param signers  public halves of all stations that the study's key lists, by name
-/// \param given  head files of stations' databases
+/// \param signers  public keys of all stations that the study's key lists, by name
+/// \param extra_heads  head files of stations' databases
 /// \throws StoreError if the database cannot be read
 [[nodiscard]] StationsCheck check_stations(const record::StudyStore& store,
                                            const std::map<std::string, PublicKey>& signers,
-                                           std::span<const std::filesystem::path> given);
+                                           std::span<const std::filesystem::path> extra_heads);
 
 }  // namespace touchtrial::analysis

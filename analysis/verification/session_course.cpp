@@ -11,18 +11,18 @@
 namespace touchtrial::analysis {
 
 SessionCourse::SessionCourse(const study::Study& study, const study::ScheduleDraw& draw,
-                             bool opened)
+                             bool answers_opened)
     : study_(study),
-      opened_(opened),
+      answers_opened_(answers_opened),
       course_(study::make_order(study, draw), study.trials.on_interruption) {}
 
-void SessionCourse::fail(const record::Event& event, const std::string& why) const {
+void SessionCourse::fail(const record::Event& event, const std::string& reason) const {
   throw VerificationError(
-      fmt::format("session {}, event {}: {}", event.session, event.sequence, why));
+      fmt::format("session {}, event {}: {}", event.session, event.sequence, reason));
 }
 
-void SessionCourse::fail(const record::Event& event, int trial, const std::string& why) const {
-  throw VerificationError(fmt::format("session {}, trial {}: {}", event.session, trial, why));
+void SessionCourse::fail(const record::Event& event, int trial, const std::string& reason) const {
+  throw VerificationError(fmt::format("session {}, trial {}: {}", event.session, trial, reason));
 }
 
 void SessionCourse::follow(const record::Event& event) {
@@ -41,7 +41,7 @@ void SessionCourse::follow(const record::Event& event) {
       is_paused_ = true;
       return;
     case record::EventKind::resumed:
-      return take_up(event);
+      return resume(event);
     case record::EventKind::stopped:
       is_stopped_ = true;
       return;
@@ -54,7 +54,7 @@ void SessionCourse::follow(const record::Event& event) {
 
 void SessionCourse::present(const record::Event& event) {
   const auto body = record::from_json<record::PresentedBody>(event.body);
-  if (!course_.has(body.trial)) fail(event, body.trial, "was presented but not scheduled");
+  if (!course_.has_trial(body.trial)) fail(event, body.trial, "was presented but not scheduled");
   if (course_.is_void(body.trial)) {
     fail(event, body.trial, "was presented under its old number after its block was restarted");
   }
@@ -113,34 +113,35 @@ void SessionCourse::follow_trial(const record::Event& event) {
 
 void SessionCourse::answer(const record::Event& event) {
   const record::AnswerBody body = record::from_json<record::AnswerBody>(event.body);
-  // An erased answer is unknown, but the places of later trials do not depend on it.
-  if (!opened_) return course_.finish(std::nullopt);
-  require_chosen(event, body);
+  // An erased answer is unknown, but later trials' places do not depend on it.
+  if (!answers_opened_) return course_.finish(std::nullopt);
+  require_chosen_level(event, body);
   if (body.answer) {
-    const study::Ask ask = study_.task->ask(study_, course_.current()->place);
-    const std::string misfit = study::mismatch_of(*body.answer, ask);
-    if (!misfit.empty()) fail(event, body.trial, misfit);
+    const study::TrialQuestion question = study_.task->ask(study_, course_.current()->place);
+    const std::string mismatch = study::mismatch_of(*body.answer, question);
+    if (!mismatch.empty()) fail(event, body.trial, mismatch);
   }
   course_.finish(body.answer);
 }
 
-void SessionCourse::require_chosen(const record::Event& event,
-                                   const record::AnswerBody& body) const {
+void SessionCourse::require_chosen_level(const record::Event& event,
+                                         const record::AnswerBody& body) const {
   if (!course_.is_adaptive()) return;  // the sealed schedule has the whole order
   const study::Trial& due = *course_.current();
-  const auto words = [](const auto& kind, const auto& track, const auto& level,
-                        const auto& target) {
+  const auto level_text = [](const auto& kind, const auto& track, const auto& level,
+                             const auto& target) {
     return kind && track && level && target
                ? fmt::format("track {}, level {}, target {} ({})", *track, *level, *target, *kind)
                : std::string("no level");
   };
-  const std::string shown = words(body.kind, body.track, body.level, body.target);
-  const std::string chosen =
-      due.level ? words(std::optional(std::string(name_of(due.role))),
-                        std::optional(due.level->track), std::optional(due.level->level), due.right)
-                : "no level";
-  if (shown == chosen) return;
-  fail(event, body.trial, fmt::format("presented {}, but the procedure chooses {}", shown, chosen));
+  const std::string presented = level_text(body.kind, body.track, body.level, body.target);
+  const std::string chosen = due.level ? level_text(std::optional(std::string(name_of(due.role))),
+                                                    std::optional(due.level->track),
+                                                    std::optional(due.level->level), due.right)
+                                       : "no level";
+  if (presented == chosen) return;
+  fail(event, body.trial,
+       fmt::format("presented {}, but the procedure chooses {}", presented, chosen));
 }
 
 void SessionCourse::restart_block(const record::Event& event) {
@@ -150,15 +151,15 @@ void SessionCourse::restart_block(const record::Event& event) {
                             "study does not restart blocks",
                             body.block));
   }
-  const study::BlockRestart again = course_.redrawn_block(body.block);
-  if (body.first_trial != again.first_trial()) {
+  const study::BlockRestart restart = course_.redrawn_block(body.block);
+  if (body.first_trial != restart.first_trial()) {
     fail(event, fmt::format("block {} was restarted with trial {}, not {}", body.block,
-                            body.first_trial, again.first_trial()));
+                            body.first_trial, restart.first_trial()));
   }
-  course_.restart(again);
+  course_.restart(restart);
 }
 
-void SessionCourse::take_up(const record::Event& event) {
+void SessionCourse::resume(const record::Event& event) {
   constexpr double kSecondsInHour = 3600.0;
   const record::ResumedBody body = record::from_json<record::ResumedBody>(event.body);
   if (body.after == "pause") {

@@ -19,22 +19,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// An opened file, or the result to report instead of its check.
+/// An opened file, or the state and reason to report for its check.
 template <typename File>
 struct Opened {
   std::optional<File> file;
   CheckState state = CheckState::not_checked;
-  std::string why;
+  std::string reason;
 };
 
-/// Whether a file certainly does not exist. A file whose status is unknown fails when it is opened.
+/// Whether a file certainly does not exist. If its status is unknown, opening it reports the error.
 bool is_absent(const fs::path& path) {
   std::error_code error;
   return fs::status(path, error).type() == fs::file_type::not_found;
 }
 
 template <typename File, typename Open>
-Opened<File> opened(Open open) {
+Opened<File> try_to_open(Open open) {
   try {
     return {open(), CheckState::passed, ""};
   } catch (const Error& error) {
@@ -50,10 +50,10 @@ Opened<study::StudyKey> open_key(const StudyFiles& files) {
     return {std::nullopt, CheckState::not_checked,
             "there is no " + one_line(files.key.string()) + "; name the key with --key"};
   }
-  return opened<study::StudyKey>([&] { return study::load_study_key(files.key); });
+  return try_to_open<study::StudyKey>([&] { return study::load_study_key(files.key); });
 }
 
-bool has_code_of(const study::StudyKey& key, const engine::Pack& pack) {
+bool has_code_of_key(const engine::Pack& pack, const study::StudyKey& key) {
   const auto& entries = pack.manifest().entries;
   return std::any_of(
       key.stimuli.begin(), key.stimuli.end(), [&](const study::KeyedStimulus& stimulus) {
@@ -63,60 +63,60 @@ bool has_code_of(const study::StudyKey& key, const engine::Pack& pack) {
       });
 }
 
-/// Whether the key's pack has since been rebuilt. It may now belong to another study, or to an
-/// edited simulated study, whose identity is the same because its seed is. Stimulus codes are
+/// Whether the pack in the key's folder was rebuilt since. It may then belong to another study, or
+/// to an edited simulated study, whose identity follows from its unchanged seed. Stimulus codes are
 /// random, so a pack with one of the key's codes belongs to this study, whatever identity it
 /// states.
-bool was_rebuilt(const record::StudyStore& store, const study::StudyKey& key,
-                 const engine::Pack& pack) {
+bool is_rebuilt_pack(const record::StudyStore& store, const study::StudyKey& key,
+                     const engine::Pack& pack) {
   const record::StudyCommitment& commitment = store.commitment();
-  const bool is_of_other = pack.manifest().study_id != commitment.study_id;
-  if (!key.simulated) return is_of_other && !has_code_of(key, pack);
-  return is_of_other || pack.digest() != commitment.pack;
+  const bool is_of_other_study = pack.manifest().study_id != commitment.study_id;
+  if (!key.simulated) return is_of_other_study && !has_code_of_key(pack, key);
+  return is_of_other_study || pack.digest() != commitment.pack;
 }
 
 Opened<engine::Pack> find_pack(const record::StudyStore& store, const study::StudyKey& key,
                                const fs::path& database) {
-  const fs::path place = study::find_pack(key, database);
-  const std::string folder = one_line(place.string());
-  const auto leave = [](const std::string& why) {
+  const fs::path path = study::find_pack(key, database);
+  const std::string folder = one_line(path.string());
+  const auto not_checked = [](const std::string& reason) {
     return Opened<engine::Pack>{std::nullopt, CheckState::not_checked,
-                                why + "; name the pack with --pack"};
+                                reason + "; name the pack with --pack"};
   };
-  if (place.empty()) return leave("the key names no pack");
-  if (is_absent(place)) {
-    return leave("there is no " + folder + ", nor this pack beside the database or here");
+  if (path.empty()) return not_checked("the key names no pack");
+  if (is_absent(path)) {
+    return not_checked("there is no " + folder + ", nor this pack beside the database or here");
   }
-  Opened<engine::Pack> pack = opened<engine::Pack>([&] { return engine::Pack(place); });
+  Opened<engine::Pack> pack = try_to_open<engine::Pack>([&] { return engine::Pack(path); });
   try {
-    if (pack.file && was_rebuilt(store, key, *pack.file)) {
-      return leave(folder + " was rebuilt for another study, or for this one after a change");
+    if (pack.file && is_rebuilt_pack(store, key, *pack.file)) {
+      return not_checked(folder + " was rebuilt for another study, or for this one after a change");
     }
   } catch (const StoreError&) {
-    // The check of the chain reports a first event that cannot be read.
+    // The check of the chain reports an unreadable first event.
   }
   return pack;
 }
 
 Opened<engine::Pack> open_pack(const StudyFiles& files, const record::StudyStore& store,
                                const std::optional<study::StudyKey>& key) {
-  if (!files.pack.empty()) return opened<engine::Pack>([&] { return engine::Pack(files.pack); });
+  if (!files.pack.empty())
+    return try_to_open<engine::Pack>([&] { return engine::Pack(files.pack); });
   if (key) return find_pack(store, *key, files.database);
   return {std::nullopt, CheckState::not_checked, "needs the key, or --pack"};
 }
 
 template <typename File>
-void put(Verification& verification, const char* name, const Opened<File>& opened) {
-  if (opened.file) return;
+void replace_check(Verification& verification, const char* name, const Opened<File>& result) {
+  if (result.file) return;
   const auto check = std::find_if(verification.checks.begin(), verification.checks.end(),
                                   [&](const Check& one) { return one.name == name; });
-  if (check != verification.checks.end()) *check = {name, opened.state, opened.why};
+  if (check != verification.checks.end()) *check = {name, result.state, result.reason};
 }
 
-/// Adds the check of the head files: missing ends and missing files. Only for databases that have
-/// or had head files.
+/// Adds the check of the head files to databases that have or had any.
 /// \param head  the hash that the user wrote down; if it is the chain's end, missing head files are
-///   not reported
+///   a note, not a fault
 void add_heads(const record::StudyStore& store, const StudyFiles& files, const std::string& head,
                Verification& verification) {
   HeadCheck heads = check_heads(store, files.database, files.heads);
@@ -133,24 +133,24 @@ void add_heads(const record::StudyStore& store, const StudyFiles& files, const s
   }
 }
 
-/// Adds the check of a collected study's stations. Only their head files show whether a missing
-/// station has sessions, or a station has later ones.
+/// Adds the check of a collected study's stations. Only head files show whether a missing station
+/// has sessions, or whether a present one has later sessions.
 void add_stations(const record::StudyStore& store, const StudyFiles& files,
                   const std::optional<study::StudyKey>& key, Verification& verification) {
   if (!key && files.heads.empty()) {
     verification.checks.push_back({"stations", CheckState::not_checked, "needs the key"});
     return;
   }
-  if (key && key->stations.size() < 2 && files.heads.empty()) return;  // parts of one station
+  if (key && key->stations.size() < 2 && files.heads.empty()) return;  // collected from one station
   std::map<std::string, PublicKey> signers;
   for (const study::Station& station : key ? key->stations : std::vector<study::Station>()) {
     signers[station.name] = study::station_key(*key, station.name).signer().public_half();
   }
   const StationsCheck stations = check_stations(store, signers, files.heads);
   Check check{"stations", CheckState::passed, "complete according to their head files"};
-  if (!stations.ends.empty()) {
-    check.detail =
-        "none is missing; compare with their day sheets or by --head-file: " + stations.ends;
+  if (!stations.unchecked_ends.empty()) {
+    check.detail = "none is missing; compare with their day sheets or by --head-file: " +
+                   stations.unchecked_ends;
   }
   if (!stations.absent.empty()) {
     check = {"stations", CheckState::not_checked,
@@ -162,12 +162,12 @@ void add_stations(const record::StudyStore& store, const StudyFiles& files,
   verification.checks.push_back(std::move(check));
 }
 
-Verification of_damaged(const record::DamagedStore& error) {
-  constexpr std::array kOthers{"key",       "seal",     "configuration", "schedule",
-                               "responses", "payloads", "traces",        "pack"};
+Verification damaged_verification(const record::DamagedStore& error) {
+  constexpr std::array kSkippedChecks{"key",       "seal",     "configuration", "schedule",
+                                      "responses", "payloads", "traces",        "pack"};
   Verification verification;
   verification.checks.push_back({"chain", CheckState::failed, one_line(error.what())});
-  for (const char* name : kOthers) {
+  for (const char* name : kSkippedChecks) {
     verification.checks.push_back({name, CheckState::not_checked, "needs a readable database"});
   }
   return verification;
@@ -182,8 +182,8 @@ Verification verify_files(const StudyFiles& files, const std::string& head) try 
   const Opened<engine::Pack> pack = open_pack(files, store, key.file);
   Verification verification =
       verify_study(store, key.file ? &*key.file : nullptr, pack.file ? &*pack.file : nullptr, head);
-  put(verification, "key", key);
-  put(verification, "pack", pack);
+  replace_check(verification, "key", key);
+  replace_check(verification, "pack", pack);
   if (store.stations() == 0) {
     add_heads(store, files, head, verification);
   } else {
@@ -191,7 +191,7 @@ Verification verify_files(const StudyFiles& files, const std::string& head) try 
   }
   return verification;
 } catch (const record::DamagedStore& error) {
-  return of_damaged(error);
+  return damaged_verification(error);
 }
 
 }  // namespace touchtrial::analysis

@@ -25,7 +25,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-// Every check below returns a description of what it checked, and throws an Error if that fails.
+// Each check below returns a description of what it checked, and throws an Error if it fails.
 
 std::string check_chain(const record::StudyStore& store) {
   if (const auto fault = store.first_fault()) throw VerificationError(shown(*fault));
@@ -58,8 +58,8 @@ std::string check_seal(const record::StudyStore& store, const study::StudyKey& k
 
 std::string check_configuration(const record::StudyStore& store, const study::StudyKey& key) {
   const record::StudyCommitment& commitment = store.commitment();
-  const auto require = [](bool same, const char* what) {
-    if (!same) throw VerificationError(std::string(what) + " differs between key and database");
+  const auto require = [](bool is_equal, const char* what) {
+    if (!is_equal) throw VerificationError(std::string(what) + " differs between key and database");
   };
   require(key.configuration == commitment.configuration, "the configuration");
   require(key.study.name == commitment.study, "the study's name");
@@ -75,21 +75,20 @@ std::string check_configuration(const record::StudyStore& store, const study::St
   return "the database's unencrypted configuration is the key's study";
 }
 
-/// Checks a session's events against the course that follows from the key and the session's
-/// enrolment number alone.
-SessionCourse course_of(const record::StudyStore& store, const study::StudyKey& key,
-                        const record::SessionRow& session) {
+/// Checks a session's events against the course given by the key and the enrolment number.
+SessionCourse checked_course(const record::StudyStore& store, const study::StudyKey& key,
+                             const record::SessionRow& session) {
   try {
-    const std::optional<SecretKey> own = participant_key(store, key, session);
+    const std::optional<SecretKey> session_key = participant_key(store, key, session);
     SessionCourse course(key.study,
                          key.draw_of(session.enrolment, draws_of(session), session.visit),
-                         own.has_value());
+                         session_key.has_value());
     for (const record::Event& event : store.events(session.session)) {
       // Only resumptions, whose duration is sealed, and answers to an adaptive order need opening.
-      const bool has_more =
-          own && (event.kind == record::EventKind::resumed ||
-                  (course.is_adaptive() && event.kind == record::EventKind::answered));
-      course.follow(has_more ? whole_event(event, *own).event : event);
+      const bool needs_opening =
+          session_key && (event.kind == record::EventKind::resumed ||
+                          (course.is_adaptive() && event.kind == record::EventKind::answered));
+      course.follow(needs_opening ? open_event(event, *session_key).event : event);
     }
     return course;
   } catch (const UsageError& error) {  // StudyError too
@@ -98,7 +97,7 @@ SessionCourse course_of(const record::StudyStore& store, const study::StudyKey& 
   }
 }
 
-/// Whether a session records that its clock, or the one of the visit before, was wrong.
+/// Whether a session records that its clock or the previous visit's clock was wrong.
 bool has_wrong_clock(const record::StudyStore& store, int session) {
   return std::ranges::any_of(store.events(session), [](const record::Event& event) {
     return event.kind == record::EventKind::deviated &&
@@ -106,7 +105,7 @@ bool has_wrong_clock(const record::StudyStore& store, int session) {
   });
 }
 
-/// Checks the days between a participant's visits on the file's chain, except in virtual time.
+/// Checks the days between each participant's visits. Simulated studies are in virtual time.
 void require_days_between(const record::StudyStore& store, const study::StudyKey& key) {
   if (key.study.visits.count < 2 || store.commitment().simulated) return;
   std::map<std::pair<int, int>, std::chrono::nanoseconds> opened;  // by enrolment and visit
@@ -114,9 +113,9 @@ void require_days_between(const record::StudyStore& store, const study::StudyKey
     if (event.kind != record::EventKind::session_opened) continue;
     const auto body = record::body_of<record::SessionOpenedBody>(event);
     opened[{body.enrolment, body.visit}] = event.at;
-    const auto before = opened.find({body.enrolment, body.visit - 1});
-    if (before == opened.end()) continue;
-    const double days = study::days_between(before->second, event.at);
+    const auto previous = opened.find({body.enrolment, body.visit - 1});
+    if (previous == opened.end()) continue;
+    const double days = study::days_between(previous->second, event.at);
     if (days >= key.study.visits.min_days) continue;
     if (days < 0.0 && has_wrong_clock(store, body.session)) continue;
     throw VerificationError(
@@ -126,7 +125,7 @@ void require_days_between(const record::StudyStore& store, const study::StudyKey
   }
 }
 
-/// Checks that a recorded group is the assigned one, and that blinded groups are not recorded.
+/// Checks that sessions record their assigned group, or none if groups are blinded.
 void require_assigned_groups(const record::StudyStore& store, const study::StudyKey& key) {
   const study::GroupPlan& groups = key.study.groups;
   std::map<int, record::SessionRow> rows;
@@ -135,9 +134,9 @@ void require_assigned_groups(const record::StudyStore& store, const study::Study
     const auto row = rows.find(event.session);
     if (row == rows.end()) return;
     const auto group = key.group_of(row->second.enrolment, draws_of(row->second));
-    const std::string dealt =
+    const std::string expected =
         group && groups.open ? groups.labels[static_cast<std::size_t>(*group)] : "";
-    if (record::body_of<record::SessionOpening>(event).group == dealt) return;
+    if (record::body_of<record::SessionOpening>(event).group == expected) return;
     throw VerificationError(
         fmt::format("session {}: its group is not the one assigned to enrolment {}", event.session,
                     row->second.enrolment));
@@ -155,16 +154,16 @@ std::string recording_station(const record::StudyStore& store, const record::Ses
   return station ? station->name : std::string();
 }
 
-/// Checks that a station recorded only its own enrolment numbers, so that it cannot pass off
-/// another station's sessions as its own.
-void require_own_number(const record::StudyStore& store, const study::StudyKey& key,
-                        const record::SessionRow& session) {
-  const std::string here = recording_station(store, session);
+/// Checks that the recording station owns the session's enrolment number, so that a station cannot
+/// record sessions as another station.
+void require_own_station(const record::StudyStore& store, const study::StudyKey& key,
+                         const record::SessionRow& session) {
+  const std::string recorder = recording_station(store, session);
   const study::Station* const owner = study::station_of(key.stations, session.enrolment);
-  if (here.empty() || owner == nullptr || owner->name == here) return;
+  if (recorder.empty() || owner == nullptr || owner->name == recorder) return;
   throw VerificationError(
       fmt::format("session {}: enrolment {} belongs to station {}, but the file is station {}'s",
-                  session.session, session.enrolment, owner->name, here));
+                  session.session, session.enrolment, owner->name, recorder));
 }
 
 std::string check_schedule(const record::StudyStore& store, const study::StudyKey& key) {
@@ -174,8 +173,8 @@ std::string check_schedule(const record::StudyStore& store, const study::StudyKe
   require_assigned_groups(store, key);
   int presentations = 0;
   for (const record::SessionRow& session : store.sessions()) {
-    require_own_number(store, key, session);
-    const SessionCourse course = course_of(store, key, session);
+    require_own_station(store, key, session);
+    const SessionCourse course = checked_course(store, key, session);
     presentations += course.presentations();
     const auto schedule = schedules.find(session.session);
     if (schedule == schedules.end()) continue;  // withdrawn
@@ -188,24 +187,24 @@ std::string check_schedule(const record::StudyStore& store, const study::StudyKe
 }
 
 std::string check_responses(const record::StudyStore& store, const study::StudyKey& key) {
-  const study::Ask ask = study::ask_of(key.study);
+  const study::TrialQuestion question = study::trial_question_of(key.study);
   int responses = 0;
   for (const record::TrialRow& row : open_trials(store, person_keys(store, key))) {
     if (!row.answer) continue;
-    const std::string misfit = study::mismatch_of(*row.answer, ask);
-    if (!misfit.empty()) {
+    const std::string mismatch = study::mismatch_of(*row.answer, question);
+    if (!mismatch.empty()) {
       throw VerificationError(
-          fmt::format("session {}, trial {}: {}", row.session, row.trial, misfit));
+          fmt::format("session {}, trial {}: {}", row.session, row.trial, mismatch));
     }
     ++responses;
   }
-  if (ask.choices().empty()) return fmt::format("{} answers on the scales", responses);
-  return fmt::format("{} answers within the {} choices", responses, ask.choices().size());
+  if (question.choices().empty()) return fmt::format("{} answers on the scales", responses);
+  return fmt::format("{} answers within the {} choices", responses, question.choices().size());
 }
 
-/// Opens the remaining sealed parts of erased sessions, and the texts about people on the file's
-/// chain.
-/// \return their number
+/// Opens the parts of erased sessions that are still sealed, and the texts about people on the
+/// file's chain.
+/// \return the number of opened parts
 int check_safety_record(const record::StudyStore& store, const study::StudyKey& key) {
   const std::map<int, record::PersonKeys> keys = person_keys(store, key);
   int parts = 0;
@@ -231,17 +230,17 @@ int check_safety_record(const record::StudyStore& store, const study::StudyKey& 
 std::string check_payloads(const record::StudyStore& store, const study::StudyKey& key) {
   int parts = 0;
   const SessionKeys keys = person_keys(store, key);
-  for (const auto& [session, own] : keys) {
-    if (!own.participant) continue;
-    std::chrono::nanoseconds last{0};
+  for (const auto& [session, person] : keys) {
+    if (!person.participant) continue;
+    std::chrono::nanoseconds previous{0};
     for (const record::Event& stored : store.events(session)) {
-      const record::Event event = whole_event(stored, *own.participant).event;
-      if (event.at < last) {
+      const record::Event event = open_event(stored, *person.participant).event;
+      if (event.at < previous) {
         throw VerificationError(
             fmt::format("session {}, event {}: its time is earlier than the previous event's",
                         session, event.sequence));
       }
-      last = event.at;
+      previous = event.at;
       ++parts;
     }
   }
@@ -251,16 +250,16 @@ std::string check_payloads(const record::StudyStore& store, const study::StudyKe
 }
 
 void check_trace(const record::StudyStore& store, const record::Event& event,
-                 const SecretKey& own) {
+                 const SecretKey& key) {
   const record::TraceBody body =
-      record::from_json<record::TraceBody>(whole_event(event, own).event.body);
+      record::from_json<record::TraceBody>(open_event(event, key).event.body);
   const auto box = store.sealed_trace(event.session, body.trial);
   const auto fail = [&](const std::string& what) {
     throw VerificationError(
         fmt::format("session {}, trial {}: the trace {}", event.session, body.trial, what));
   };
   if (!box) return fail("is missing");
-  const auto trace = record::unsealed_trace(*box, own);
+  const auto trace = record::unsealed_trace(*box, key);
   if (!trace) return fail("does not open");
   if (trace->samples.size() != static_cast<std::size_t>(body.samples))
     fail("has a different number of samples than its event");
@@ -270,9 +269,9 @@ std::string check_traces(const record::StudyStore& store, const study::StudyKey&
   const SessionKeys keys = person_keys(store, key);
   int traces = 0;
   store.for_each(record::EventKind::trace_stored, [&](const record::Event& event) {
-    const auto own = keys.find(event.session);
-    if (own == keys.end() || !own->second.participant) return;
-    check_trace(store, event, *own->second.participant);
+    const auto person = keys.find(event.session);
+    if (person == keys.end() || !person->second.participant) return;
+    check_trace(store, event, *person->second.participant);
     ++traces;
   });
   return fmt::format("{} traces opened and decoded", traces);
@@ -285,20 +284,21 @@ std::string check_pack(const record::StudyStore& store, const study::StudyKey* k
   if (pack.digest() != commitment.pack) {
     throw VerificationError("the pack is not the one that the database was created with");
   }
-  const std::string intact =
+  const std::string summary =
       fmt::format("signed, {} fields intact", pack.manifest().entries.size());
-  if (key == nullptr) return intact + "; not compared with the key";
+  if (key == nullptr) return summary + "; not compared with the key";
   for (const study::KeyedStimulus& field : key->fields()) static_cast<void>(pack.entry(field.code));
   const std::array folders = {key->study.folder, pack.folder().parent_path()};
-  const std::size_t shown = study::shown_pictures(key->study).size();
-  const std::size_t absent = study::require_pictures(pack, key->study, folders).size();
-  return intact + fmt::format(", including every code of the key; {} of {} shown pictures compared",
-                              shown - absent, shown);
+  const std::size_t shown_count = study::shown_pictures(key->study).size();
+  const std::size_t absent_count = study::require_pictures(pack, key->study, folders).size();
+  return summary +
+         fmt::format(", including every code of the key; {} of {} shown pictures compared",
+                     shown_count - absent_count, shown_count);
 }
 
-/// The place of a hash on a chain, in words; empty if the chain does not contain it.
-std::string place_on(const std::vector<record::Event>& chain, const std::string& head,
-                     const std::string& name) {
+/// Describes the event with a hash; empty if the chain does not contain the hash.
+std::string event_with_hash(const std::vector<record::Event>& chain, const std::string& head,
+                            const std::string& name) {
   const auto found = std::find_if(chain.begin(), chain.end(), [&](const record::Event& event) {
     return to_hex(event.hash).starts_with(head);
   });
@@ -306,13 +306,13 @@ std::string place_on(const std::vector<record::Event>& chain, const std::string&
   return fmt::format("event {} of {}, which has {}", found->sequence, name, chain.size());
 }
 
-/// Accepts a hash on the file's chain, and in a database collected from several stations also one
-/// on the chain of a station's own file.
+/// Accepts a hash on the file's chain or, in a database collected from several stations, on a
+/// station's chain.
 std::string check_head(const record::StudyStore& store, const std::string& head) {
-  std::string place = place_on(store.events(0), head, "the file's chain");
+  std::string place = event_with_hash(store.events(0), head, "the file's chain");
   for (int station = 1; place.empty() && station <= store.stations(); ++station) {
-    place =
-        place_on(store.station_chain(station), head, fmt::format("station {}'s chain", station));
+    place = event_with_hash(store.station_chain(station), head,
+                            fmt::format("station {}'s chain", station));
   }
   if (!place.empty()) return place;
   throw VerificationError(
@@ -324,7 +324,7 @@ std::string check_head(const record::StudyStore& store, const std::string& head)
 }
 
 template <typename Work>
-Check done(const std::string& name, Work work) {
+Check run_check(const std::string& name, Work work) {
   try {
     return {name, CheckState::passed, work()};
   } catch (const Error& error) {
@@ -332,8 +332,8 @@ Check done(const std::string& name, Work work) {
   }
 }
 
-Check left(const std::string& name, const std::string& needed) {
-  return {name, CheckState::not_checked, "needs the " + needed};
+Check skipped_check(const std::string& name, const std::string& requirement) {
+  return {name, CheckState::not_checked, "needs the " + requirement};
 }
 
 }  // namespace
@@ -364,14 +364,15 @@ Verification verify_study(const record::StudyStore& store, const study::StudyKey
     verification.investigator = store.commitment().investigator;
     verification.notes = chain_notes(store);
   } catch (const StoreError&) {
-    // The first check reports what is wrong with the file's chain.
+    // The check of the chain reports the fault.
   }
   const auto with_key = [&](const char* name, std::string (*check)(const record::StudyStore&,
                                                                    const study::StudyKey&)) {
-    verification.checks.push_back(key == nullptr ? left(name, "key")
-                                                 : done(name, [&] { return check(store, *key); }));
+    verification.checks.push_back(key == nullptr
+                                      ? skipped_check(name, "key")
+                                      : run_check(name, [&] { return check(store, *key); }));
   };
-  verification.checks.push_back(done("chain", [&] { return check_chain(store); }));
+  verification.checks.push_back(run_check("chain", [&] { return check_chain(store); }));
   with_key("key", check_key);
   if (verification.checks.back().state == CheckState::failed)
     key = nullptr;  // a wrong key opens nothing
@@ -381,11 +382,11 @@ Verification verify_study(const record::StudyStore& store, const study::StudyKey
   with_key("responses", check_responses);
   with_key("payloads", check_payloads);
   with_key("traces", check_traces);
-  verification.checks.push_back(pack == nullptr ? left("pack", "pack") : done("pack", [&] {
-    return check_pack(store, key, *pack);
-  }));
+  verification.checks.push_back(
+      pack == nullptr ? skipped_check("pack", "pack")
+                      : run_check("pack", [&] { return check_pack(store, key, *pack); }));
   if (!head.empty()) {
-    verification.checks.push_back(done("head", [&] { return check_head(store, head); }));
+    verification.checks.push_back(run_check("head", [&] { return check_head(store, head); }));
   }
   return verification;
 }

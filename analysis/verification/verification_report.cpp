@@ -12,7 +12,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// Lists the skipped checks, so that they are not mistaken for passed ones.
+/// Lists the skipped checks, so that readers do not mistake them for passed checks.
 std::string skipped_line(const Verification& verification) {
   std::vector<std::string> names;
   for (const Check& check : verification.checks) {

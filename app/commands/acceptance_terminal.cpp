@@ -21,8 +21,8 @@ namespace touchtrial::app {
 namespace {
 
 constexpr double kNewtonsPerGram = 0.001 * device::kStandardGravityMS2;
-/// Longer than a run, so that it never ends before its last sample.
-constexpr double kMoreTimeS = 2.0;
+/// Extra time, so that a run never ends before its last sample.
+constexpr double kExtraTimeS = 2.0;
 
 /// Suspends this program for two seconds, three seconds from now, through a separate shell.
 class Suspension {
@@ -41,27 +41,29 @@ class Suspension {
   }
   Suspension(const Suspension&) = delete;
   Suspension& operator=(const Suspension&) = delete;
-  [[nodiscard]] bool works() const noexcept { return has_child_; }
+  [[nodiscard]] bool has_started() const noexcept { return has_child_; }
 
  private:
   pid_t child_ = -1;
   bool has_child_ = false;
 };
 
-/// A handle that hangs on a spring with a weight may be motionless to the last bit. Frozen encoders
-/// end the acceptance anyway, because the handle does not follow a push.
+/// Disables the check for frozen encoders: the position of a handle that hangs from a spring may
+/// not change by one bit. Frozen encoders end the acceptance anyway, because the handle does not
+/// follow a push.
 device::SafetyLimits limits_of(device::HapticDevice& device, const device::DeviceUse& use) {
   device::SafetyLimits limits =
       device::limits_on(device.info(), device::stricter_of({}, use.limits));
   limits.frozen_s = std::numeric_limits<double>::infinity();
   return limits;
 }
-device::HapticDevice& with_motors(device::HapticDevice& device) {
+device::HapticDevice& require_motors(device::HapticDevice& device) {
   const device::DeviceInfo info = device.info();
   if (info.simulated || info.visual || !info.workspace) {
-    throw DeviceError(info.name +
-                      ": has no motors; name a device that touchtrial device list finds on a cable "
-                      "(device accept --emulate rehearses without one)");
+    throw DeviceError(
+        info.name +
+        ": has no motors; name a connected device from `touchtrial device list`, or rehearse "
+        "without one with `touchtrial device accept --emulate MODEL`");
   }
   return device;
 }
@@ -87,7 +89,7 @@ const char* instruction_for(device::DeviceAxis axis) {
          "a weight on its end; or pull towards you with a spring scale.";
 }
 
-std::string answer_to(const std::string& question) {
+std::string ask_person(const std::string& question) {
   const std::optional<std::string> answer = attended_answer(question);
   if (!answer) throw AcceptanceStopped{};
   return *answer;
@@ -95,7 +97,7 @@ std::string answer_to(const std::string& question) {
 
 std::atomic<pid_t> acceptance_process{-1};
 
-extern "C" void pass_on_to_acceptance(int signal) {
+extern "C" void forward_to_acceptance(int signal) {
   const pid_t process = acceptance_process.load();
   if (process > 0) ::kill(process, signal);
 }
@@ -106,7 +108,7 @@ AcceptanceTerminal::AcceptanceTerminal(const std::string& driver,
                                        const device::DeviceSettings& settings)
     : device_(device::open_device(driver, settings)),
       limits_(limits_of(*device_, settings.use_of(driver))),
-      run_(with_motors(*device_), limits_, device::kServoRateHz, false) {
+      run_(require_motors(*device_), limits_, device::kServoRateHz, false) {
   show(
       "Each step is described before it starts. Enter continues, s skips the step, q ends.\nCtrl-C "
       "switches the force off at once, at any time.\n");
@@ -130,7 +132,7 @@ device::ServoReport AcceptanceTerminal::run(const std::string& name,
                                             device::Measurement& measurement) {
   const auto report =
       run_.run([&](std::int64_t) { return name; }, measurement, measurement,
-               measurement.seconds() + kMoreTimeS, [&] { return measurement.done(); });
+               measurement.seconds() + kExtraTimeS, [&] { return measurement.done(); });
   if (!report) throw AcceptanceStopped{};
   require_not_aborted();
   return *report;
@@ -139,13 +141,13 @@ device::ServoReport AcceptanceTerminal::run(const std::string& name,
 std::optional<device::ServoReport> AcceptanceTerminal::run_suspended(
     device::Measurement& measurement) {
   const Suspension suspension;
-  if (!suspension.works()) return std::nullopt;
+  if (!suspension.has_started()) return std::nullopt;
   return run("suspend", measurement);
 }
 
 device::Consent AcceptanceTerminal::ready(const device::Prompt& prompt) {
   while (true) {
-    const std::string answer = answer_to("\n" + prompt.text + "\n[Enter, s, q] ");
+    const std::string answer = ask_person("\n" + prompt.text + "\n[Enter, s, q] ");
     if (answer.empty()) {
       device_->rearm();  // a fault of the previous run halted it
       return device::Consent::go;
@@ -163,7 +165,7 @@ std::optional<double> AcceptanceTerminal::weight_n(device::DeviceAxis axis, doub
                   std::floor(max_n / kNewtonsPerGram), min_n, max_n);
   show(fmt::format("\nAxis {}. {}\n", device::name_of(axis), instruction_for(axis)));
   while (true) {
-    const std::string line = answer_to(fmt::format(
+    const std::string line = ask_person(fmt::format(
         "weight in g, or reading of a spring scale in N as in 1.2N ({}; s: none): ", range));
     if (line == "s") return std::nullopt;
     if (line == "q") throw AcceptanceStopped{};
@@ -177,7 +179,7 @@ std::optional<double> AcceptanceTerminal::weight_n(device::DeviceAxis axis, doub
 
 std::optional<double> AcceptanceTerminal::temperature_c(const std::string& question) {
   while (true) {
-    const std::string line = answer_to(question + " (Enter: no thermometer): ");
+    const std::string line = ask_person(question + " (Enter: no thermometer): ");
     if (line.empty()) return std::nullopt;
     const auto value = number_in<double>(line);
     if (value && *value > -50.0 && *value < 200.0) return value;
@@ -186,7 +188,7 @@ std::optional<double> AcceptanceTerminal::temperature_c(const std::string& quest
 }
 
 std::string AcceptanceTerminal::ask_observation(const std::string& question) {
-  const std::string answer = one_line(answer_to(question));
+  const std::string answer = one_line(ask_person(question));
   if (answer == "q") throw AcceptanceStopped{};
   return answer;
 }
@@ -199,7 +201,7 @@ void AcceptanceTerminal::require_not_aborted() const {
   if (run_.stop() != AttendedStop::none) throw AcceptanceStopped{};
 }
 
-int in_own_process(const std::function<int()>& work) {
+int run_in_child_process(const std::function<int()>& work) {
   static_assert(std::atomic<pid_t>::is_always_lock_free, "a signal handler reads it");
   const pid_t process = ::fork();
   if (process <= 0) return work();
@@ -209,13 +211,13 @@ int in_own_process(const std::function<int()>& work) {
     static_cast<void>(std::signal(signal, SIG_IGN));
   }
   for (const int signal : {SIGTERM, SIGHUP}) {
-    static_cast<void>(std::signal(signal, pass_on_to_acceptance));
+    static_cast<void>(std::signal(signal, forward_to_acceptance));
   }
   int status = 0;
   while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
   }
-  constexpr int kBySignal = 128;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : kBySignal + WTERMSIG(status);
+  constexpr int kSignalExitBase = 128;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : kSignalExitBase + WTERMSIG(status);
 }
 
 }  // namespace touchtrial::app

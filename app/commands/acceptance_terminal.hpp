@@ -13,7 +13,7 @@
 
 namespace touchtrial::app {
 
-/// The person or a signal ended the acceptance.
+/// Thrown when the person or a signal ends the acceptance.
 struct AcceptanceStopped {};
 
 /// Prompts go to standard error: standard output holds the result only. Belongs to the main thread.
@@ -48,14 +48,14 @@ class AcceptanceTerminal final : public device::AcceptanceBench, public device::
 
   std::unique_ptr<device::HapticDevice> device_;
   device::SafetyLimits limits_;
-  double max_n_ = std::numeric_limits<double>::infinity();  ///< of limit_force
+  double max_n_ = std::numeric_limits<double>::infinity();  ///< set by limit_force
   AttendedRun run_;
   device::DeviceInfo info_;
 };
 
-/// Does the work in a child process: when that is suspended, the shell still waits for this process
-/// and does not take over the terminal. Called before there are threads.
+/// Does the work in a child process, so that suspending it does not return the terminal to the
+/// shell. Call it before threads exist.
 /// \return the exit code, in both processes
-int in_own_process(const std::function<int()>& work);
+int run_in_child_process(const std::function<int()>& work);
 
 }  // namespace touchtrial::app

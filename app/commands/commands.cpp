@@ -21,19 +21,19 @@
 namespace touchtrial::app {
 namespace {
 
-/// The parser's group of commands without a group.
-constexpr const char* kParsersOwnGroup = "Subcommands";
+/// The parser's name for the default group of commands.
+constexpr const char* kDefaultGroup = "Subcommands";
 
-/// \param unwanted  text that a value must not contain
-CLI::Validator refusing(const std::string& unwanted, const std::string& message) {
+/// \param forbidden  text that a value must not contain
+CLI::Validator without_text(const std::string& forbidden, const std::string& message) {
   return {[=](const std::string& text) {
-            return text.find(unwanted) == std::string::npos ? std::string() : message;
+            return text.find(forbidden) == std::string::npos ? std::string() : message;
           },
           ""};
 }
 
-/// Two sides of 320 to 16,384 pixels, typed as 1280x720.
-std::pair<int, int> size_of(const std::string& text) {
+/// Parses WIDTHxHEIGHT, for instance 1280x720; each side from 320 to 16,384 pixels.
+std::pair<int, int> parse_window_size(const std::string& text) {
   const auto side = [](std::string_view part) {
     const auto number = number_in<int>(part);
     return number && *number >= 320 && *number <= 16'384 ? *number : 0;
@@ -54,7 +54,7 @@ struct CommandGroup {
   std::vector<void (*)(CLI::App&, Action&)> add;
 };
 
-/// As the help shows them.
+/// The groups of the help, in order.
 const std::vector<CommandGroup>& command_groups() {
   static const std::vector<CommandGroup> groups = {
       {"Design a study",
@@ -65,9 +65,9 @@ const std::vector<CommandGroup>& command_groups() {
       {"Run sessions",
        {add_run_command, add_status_command, add_consent_command, add_people_commands,
         add_screen_command}},
-      {"Look at results",
+      {"Analyse results",
        {add_study_end_commands, add_report_command, add_export_command, add_fit_command}},
-      {"Care for devices, keys and data",
+      {"Maintain devices, keys and data",
        {add_device_command, add_key_command, add_verify_command, add_sync_command,
         add_merge_command, add_reference_command}}};
   return groups;
@@ -85,7 +85,7 @@ void add_commands(CLI::App& program, Action& action) {
   for (const CommandGroup& group : command_groups()) {
     for (const auto& add : group.add) add(program, action);
     for (CLI::App* command : program.get_subcommands(
-             [](const CLI::App* one) { return one->get_group() == kParsersOwnGroup; })) {
+             [](const CLI::App* subcommand) { return subcommand->get_group() == kDefaultGroup; })) {
       command->group(group.name);
     }
   }
@@ -102,8 +102,8 @@ int run_command(const std::vector<std::string>& words) {
 
 std::vector<std::string> protocols_of_new_studies() {
   std::vector<std::string> names;
-  for (const study::Protocol* one : study::protocols()) {
-    if (one->section.empty()) names.emplace_back(one->name);
+  for (const study::Protocol* protocol : study::protocols()) {
+    if (protocol->section.empty()) names.emplace_back(protocol->name);
   }
   return names;
 }
@@ -119,7 +119,7 @@ CLI::Option* add_database_argument(CLI::App& command, std::filesystem::path& dat
 
 CLI::Option* add_accept_loss_option(CLI::App& command, std::string& reason) {
   return command.add_option("--accept-loss", reason,
-                            "Accept the database's loss and continue, with the reason; recorded");
+                            "Continue although the database has lost data; the reason is recorded");
 }
 
 CLI::Option* add_key_option(CLI::App& command, std::filesystem::path& key,
@@ -133,7 +133,7 @@ void add_passphrase_option(CLI::App& command) {
       .add_option(
           "--passphrase-file", passphrase_files(),
           "File or descriptor (/dev/fd/3) whose first line is the passphrase of a protected "
-          "key or station's file; may be repeated (default: asked for)")
+          "key or station's file; may be repeated (default: prompt)")
       ->type_name("FILE")
       ->allow_extra_args(false);
 }
@@ -163,9 +163,10 @@ void add_on_option(CLI::App& command, std::string& model) {
 }
 
 CLI::Validator place_validator() {
-  return refusing("://",
-                  "is an address, not a file; make a file of what is there with touchtrial merge "
-                  "ADDRESS -o all.db");
+  return without_text(
+      "://",
+      "is an address, not a file; copy its data to a file with `touchtrial merge ADDRESS "
+      "-o all.db`");
 }
 
 CLI::Option* add_driver_argument(CLI::App& command, const std::string& name, std::string& driver) {
@@ -189,7 +190,8 @@ void add_window_options(CLI::App& command, int& monitor,
                         const std::string& size_meaning) {
   add_count_option(command, "--monitor", monitor, "Monitor of the participant's window", 1, 16);
   command.add_option_function<std::string>(
-      "--window", [&size_px](const std::string& text) { size_px = size_of(text); }, size_meaning);
+      "--window", [&size_px](const std::string& text) { size_px = parse_window_size(text); },
+      size_meaning);
 }
 
 CLI::Validator finite_range(double low, double high) {
@@ -238,12 +240,12 @@ void add_yes_flag(CLI::App& command, bool& yes) {
 }
 
 CLI::Option* add_force_flag(CLI::App& command) {
-  const auto notice = [](const std::filesystem::path& file, const std::filesystem::path& kept) {
-    spdlog::warn("{}: is kept as {}", file.string(), kept.string());
+  const auto notice = [](const std::filesystem::path& file, const std::filesystem::path& renamed) {
+    spdlog::warn("{}: was renamed to {}", file.string(), renamed.string());
   };
   return command.add_flag_callback(
       "--force", [=] { move_foreign_files_aside(notice); },
-      "Write even if files exist that this program did not write or that were changed since; they "
+      "Replace files that this program did not write or that have changed since; the old files "
       "are renamed to NAME.1, NAME.2 and so on");
 }
 

@@ -1,6 +1,6 @@
 /// \file The commands, and the arguments and options that several of them share. Each command adds
 ///   itself to the parser and sets the action that runs when parsing succeeds. Commands parse, call
-///   the folders below, and print; they compute nothing themselves. Private to app: it exposes the
+///   other libraries, and print; they compute nothing themselves. Private to app: it exposes the
 ///   parser's type.
 #pragma once
 
@@ -19,37 +19,37 @@ namespace touchtrial::app {
 
 struct SigningFiles;
 
-/// The work of the chosen command.
+/// Runs the chosen command.
 /// \return the exit code
 /// \throws touchtrial::Error
 using Action = std::function<int()>;
 
-/// The exit code of data that fail verification.
+/// The exit code if data fail verification.
 inline constexpr int kNotVerified = 3;
 
-/// A command with its arguments, which live as long as the command.
+/// A command and its arguments, which exist as long as the command.
 template <typename Arguments>
 struct Command {
   CLI::App& command;
   Arguments& arguments;
 };
 
-/// Adds a command below another, whose work begins when parsing succeeds.
+/// Adds a subcommand, whose work starts when parsing succeeds.
 template <typename Arguments>
-Command<Arguments> add_command(CLI::App& above, Action& action, const std::string& name,
+Command<Arguments> add_command(CLI::App& parent, Action& action, const std::string& name,
                                const std::string& meaning, int (*work)(const Arguments&)) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* const command = above.add_subcommand(name, meaning);
+  CLI::App* const command = parent.add_subcommand(name, meaning);
   command->callback([=, &action] { action = [=] { return work(*arguments); }; });
   return {*command, *arguments};
 }
 
-/// All commands of the program.
+/// Adds all commands.
 void add_commands(CLI::App& program, Action& action);
-/// Runs one command inside another.
-/// \param words  as typed after the program's name
+/// Runs one command from within another.
+/// \param words  the command line without the program's name
 /// \return the exit code
-/// \throws what the command throws, or CLI::ParseError
+/// \throws CLI::ParseError, and the command's exceptions
 int run_command(const std::vector<std::string>& words);
 
 void add_extract_command(CLI::App& program, Action& action);
@@ -87,7 +87,7 @@ void add_power_command(CLI::App& program, Action& action);
 void add_procedure_command(CLI::App& program, Action& action);
 void add_device_command(CLI::App& program, Action& action);
 void add_screen_command(CLI::App& program, Action& action);
-/// reference, which the help does not show.
+/// reference, a hidden command.
 void add_reference_command(CLI::App& program, Action& action);
 /// The commands of "device".
 void add_device_test_command(CLI::App& device, Action& action);
@@ -101,23 +101,23 @@ void add_device_conform_command(CLI::App& device, Action& action);
 ///@{
 
 /// The protocols whose studies `new` and `stimuli import` can write: those without their own
-/// section in the study file. The others start from a ready study (touchtrial examples).
+/// section in the study file. The others start from an example study (touchtrial examples).
 [[nodiscard]] std::vector<std::string> protocols_of_new_studies();
 /// STUDY, required.
 void add_study_argument(CLI::App& command, std::filesystem::path& study);
-/// DB, required: a database file, and no address.
+/// DB, required: a database file, not an address.
 CLI::Option* add_database_argument(CLI::App& command, std::filesystem::path& database,
                                    const std::string& meaning = "Database of the study");
 /// --key, see key_of_database; and --passphrase-file, see app/terminal/passphrases.hpp.
 CLI::Option* add_key_option(CLI::App& command, std::filesystem::path& key,
                             const std::string& meaning =
                                 "Key of the study (default: DB.key, or the "
-                                "one named last time)");
+                                "one used last)");
 /// --passphrase-file, for commands that read keys or stations' files without --key.
 void add_passphrase_option(CLI::App& command);
-/// The reason for continuing despite a loss that the head file reveals.
+/// --accept-loss: the reason for continuing despite a loss that the head file reveals.
 CLI::Option* add_accept_loss_option(CLI::App& command, std::string& reason);
-/// --key, --station-file and --accept-loss, of commands that record; see opened_to_record.
+/// --key, --station-file and --accept-loss, for commands that record; see open_for_recording.
 void add_signing_options(CLI::App& command, SigningFiles& files);
 /// --pack; see pack_place_for.
 void add_pack_option(CLI::App& command, std::filesystem::path& pack);
@@ -133,14 +133,14 @@ void add_on_option(CLI::App& command, std::string& model);
 /// \name Devices
 ///@{
 
-/// A driver, by its own name or a product's; sets `driver` to its own name. UsageError names the
-/// nearest.
-/// \param name  of the argument or option
+/// A driver, by its own name or a product's; sets `driver` to the driver's name. The UsageError for
+/// an unknown name suggests the nearest.
+/// \param name  name of the argument or option
 CLI::Option* add_driver_argument(CLI::App& command, const std::string& name, std::string& driver);
-/// --settings; see device::device_settings_for.
+/// --settings; see device::load_device_settings.
 void add_settings_option(CLI::App& command, std::filesystem::path& settings);
 /// --monitor, and --window for a window of this size instead of the whole monitor.
-/// \param size_meaning  of --window
+/// \param size_meaning  help text of --window
 void add_window_options(CLI::App& command, int& monitor,
                         std::optional<std::pair<int, int>>& size_px,
                         const std::string& size_meaning =
@@ -159,9 +159,9 @@ void add_seed_option(CLI::App& command, std::uint64_t& seed, const std::string& 
 /// A whole number from `min` to `max`, whose default the help shows.
 CLI::Option* add_count_option(CLI::App& command, const std::string& name, int& count,
                               const std::string& meaning, int min, int max);
-/// --jobs, by default as many as there are logical cores.
+/// --jobs; default: the number of logical cores.
 void add_jobs_option(CLI::App& command, int& jobs);
-/// --yes: does not ask; see confirm of app/terminal/console.hpp.
+/// --yes: skips confirmation; see confirm of app/terminal/console.hpp.
 void add_yes_flag(CLI::App& command, bool& yes);
 /// --force, for every command with output paths: see core/outputs.hpp.
 CLI::Option* add_force_flag(CLI::App& command);

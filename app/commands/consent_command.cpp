@@ -7,6 +7,7 @@
 #include "core/text.hpp"
 #include "core/utc.hpp"
 #include "record/personal_data.hpp"
+#include "record/study_store.hpp"
 
 #include <algorithm>
 #include <array>
@@ -23,8 +24,8 @@
 namespace touchtrial::app {
 namespace {
 
-constexpr int kOldestYears = 130;
-constexpr std::size_t kMaxVersionBytes = 64;  // bytes
+constexpr int kMaxAgeYears = 130;
+constexpr std::size_t kMaxVersionBytes = 64;
 
 struct ConsentArguments {
   std::filesystem::path database;
@@ -44,11 +45,11 @@ void set_detail(record::PersonalRecord& record, std::string_view name, const std
   if (value.empty()) return;
   if (name == "age") {
     record.age = number_in<int>(value);
-    if (!record.age || *record.age < 0 || *record.age > kOldestYears) {
+    if (!record.age || *record.age < 0 || *record.age > kMaxAgeYears) {
       throw UsageError(
           fmt::format("consent: the age must be a whole number of years from 0 to {}; nothing was "
                       "recorded",
-                      kOldestYears));
+                      kMaxAgeYears));
     }
   } else if (name == "gender") {
     record.gender = value;
@@ -74,23 +75,23 @@ void ask_details(record::PersonalRecord& record) {
 
 /// Reads lines "NAME: value" to the end of standard input. Messages never repeat a value.
 void read_details(record::PersonalRecord& record) {
-  std::array<bool, kDetails.size()> given{};
+  std::array<bool, kDetails.size()> is_set{};
   int number = 0;
   for (std::string line; std::getline(std::cin, line);) {
     ++number;
     if (trimmed(line).empty()) continue;
     const std::size_t colon = std::min(line.find(':'), line.size());
     const std::string name = trimmed(std::string_view(line).substr(0, colon));
-    const auto* const found = std::find(kDetails.begin(), kDetails.end(), name);
-    if (found == kDetails.end() || colon == line.size()) {
+    const auto* const detail = std::find(kDetails.begin(), kDetails.end(), name);
+    if (detail == kDetails.end() || colon == line.size()) {
       throw UsageError(
           fmt::format("consent: standard input, line {}: must be \"age: YEARS\", \"gender: WORDS\" "
                       "or \"contact: WORDS\"; nothing was recorded",
                       number));
     }
-    if (std::exchange(given.at(static_cast<std::size_t>(found - kDetails.begin())), true)) {
+    if (std::exchange(is_set.at(static_cast<std::size_t>(detail - kDetails.begin())), true)) {
       throw UsageError(
-          fmt::format("consent: standard input, line {}: {} is there twice; nothing was recorded",
+          fmt::format("consent: standard input, line {}: {} is given twice; nothing was recorded",
                       number, name));
     }
     set_detail(record, name, trimmed(std::string_view(line).substr(colon + 1)));
@@ -123,13 +124,13 @@ int record_consent(const ConsentArguments& arguments) {
   record.consented_utc = utc_text(utc_now());
   const std::filesystem::path path = record::personal_data_path(arguments.database);
   record::PersonalData data(path);
-  const auto before = data.find(record.participant);
+  const auto previous = data.find(record.participant);
   data.put(record);
   print(fmt::format("{}: consent of participant {} to version {} recorded\n", path.string(),
                     record.participant, record.consent_version));
-  if (before) {
-    print(fmt::format("the consent to version {} of {} and its details are kept\n",
-                      before->consent_version, before->consented_utc));
+  if (previous) {
+    print(fmt::format("the consent to version {} of {} and its details are also kept\n",
+                      previous->consent_version, previous->consented_utc));
   }
   return 0;
 }
@@ -144,7 +145,9 @@ void add_consent_command(CLI::App& program, Action& action) {
       ->check(place_validator());
   command.add_option("--participant", arguments.record.participant, "Id, for instance P07")
       ->required();
-  command.add_option("--version", arguments.record.consent_version, "Version that was signed")
+  command
+      .add_option("--version", arguments.record.consent_version,
+                  "Version of the consent form that was signed")
       ->required();
   add_yes_flag(command, arguments.yes);
   command

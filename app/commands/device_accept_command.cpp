@@ -46,7 +46,7 @@ struct AcceptArguments {
 };
 
 /// A model's name as part of a file name.
-std::string file_word(std::string name) {
+std::string file_name_part(std::string name) {
   for (char& letter : name) {
     const bool is_plain = (letter >= '0' && letter <= '9') || (letter >= 'a' && letter <= 'z') ||
                           (letter >= 'A' && letter <= 'Z') || letter == '-' || letter == '_';
@@ -56,12 +56,12 @@ std::string file_word(std::string name) {
 }
 
 /// The name of a rehearsal on this model.
-std::string emulated_word(const std::string& model) {
-  return "emulated-" + file_word(model);
+std::string emulated_name(const std::string& model) {
+  return "emulated-" + file_name_part(model);
 }
 
-/// "falcon-model.json" beside "falcon-certificate.json", with this ending in place of
-/// "-certificate.json".
+/// A path beside the certificate: "falcon-model.json" for "falcon-certificate.json" and the ending
+/// "-model.json".
 fs::path file_beside(const fs::path& certificate, const std::string& ending) {
   std::string stem = certificate.stem().string();
   const std::string suffix = "-certificate";
@@ -78,10 +78,11 @@ struct AcceptanceFiles {
   [[nodiscard]] std::array<const fs::path*, 3> all() const { return {&certificate, &page, &model}; }
 };
 
-/// Called before the device is opened, so that a run does not end without a place for its results.
-/// \param name  of the certificate, without its ending, unless the arguments name one
-/// \throws UsageError if the certificate would not be a .json file, or a file that this very
-///   acceptance reads would be replaced
+/// Checks the output paths before the device is opened, so that no run ends without a path for its
+/// results.
+/// \param name  the default name of the certificate, without its ending
+/// \throws UsageError if the certificate would not be a .json file, or an input of this
+///   acceptance would be replaced
 /// \throws FileError if they cannot be written
 AcceptanceFiles files_to_write(const AcceptArguments& arguments, const std::string& name) {
   const fs::path path =
@@ -99,19 +100,20 @@ AcceptanceFiles files_to_write(const AcceptArguments& arguments, const std::stri
       return !input.empty() && fs::equivalent(*file, input, ignored);
     };
     if (std::ranges::any_of(inputs, is_input)) {
-      throw UsageError(one_line(file->string()) +
-                       ": is read by this acceptance, which would replace it; name another place "
-                       "with --certificate");
+      throw UsageError(
+          one_line(file->string()) +
+          ": is an input of this acceptance and would be replaced; choose another path "
+          "with --certificate");
     }
-    require_output_place(*file);
-    // Only writing shows that the file can be written.
-    const Draft trial(*file, Draft::Kind::file);
+    require_output_path(*file);
+    // Only a trial write shows that the file can be written.
+    const Draft draft(*file, Draft::Kind::file);
   }
   return files;
 }
 
-/// Whether a file is a certificate that no session accepts: it failed, or is of a rehearsal.
-bool is_no_loss(const fs::path& certificate) {
+/// Whether a file is a certificate that no session accepts, because it failed or is a rehearsal's.
+bool is_replaceable(const fs::path& certificate) {
   try {
     const device::Certificate old = device::read_certificate(certificate).certificate;
     return !old.emulated.empty() || !old.passed();
@@ -121,11 +123,11 @@ bool is_no_loss(const fs::path& certificate) {
 }
 
 /// Backs up a certificate that sessions may depend on, with the files beside it.
-void back_up_earlier(const AcceptanceFiles& files) {
-  if (is_there(files.certificate) && is_no_loss(files.certificate)) return;
+void back_up_certificate(const AcceptanceFiles& files) {
+  if (path_exists(files.certificate) && is_replaceable(files.certificate)) return;
   for (const fs::path* const file : files.all()) {
-    if (!is_there(*file)) continue;
-    spdlog::warn("{}: is kept as {}", file->string(), move_aside(*file).string());
+    if (!path_exists(*file)) continue;
+    spdlog::warn("{}: was renamed to {}", file->string(), move_aside(*file).string());
   }
 }
 
@@ -136,9 +138,9 @@ int write_results(const AcceptArguments& arguments, const AcceptanceFiles& files
   certificate.made = std::chrono::floor<std::chrono::seconds>(
       std::chrono::sys_time<std::chrono::nanoseconds>(utc_now()));
   device::DeviceModel model = device::model_of(certificate, info);
-  if (!certificate.emulated.empty()) model.name = emulated_word(certificate.emulated);
+  if (!certificate.emulated.empty()) model.name = emulated_name(certificate.emulated);
   const std::string json = device::certificate_json(certificate);
-  back_up_earlier(files);
+  back_up_certificate(files);
   write_output(files.certificate, json);
   write_output(files.page, acceptance_page(acceptance));
   write_output(files.model, device::device_model_json(model));
@@ -158,21 +160,21 @@ device::AcceptanceOptions options_of(const AcceptArguments& arguments) {
 
 int rehearse_on_model(const AcceptArguments& arguments) {
   const device::DeviceModel model = device::model_of_device(arguments.emulated);
-  const AcceptanceFiles files = files_to_write(arguments, emulated_word(model.name));
+  const AcceptanceFiles files = files_to_write(arguments, emulated_name(model.name));
   return write_results(arguments, files, device::rehearse_acceptance(model, options_of(arguments)),
                        device::ModelledDevice(model).info());
 }
 
-int accept_on_cable(const AcceptArguments& arguments) {
+int accept_connected_device(const AcceptArguments& arguments) {
   const AcceptanceFiles files =
       files_to_write(arguments, device::device_driver(arguments.driver).name);
   try {
-    AcceptanceTerminal terminal(arguments.driver, device::device_settings_for(arguments.settings));
+    AcceptanceTerminal terminal(arguments.driver, device::load_device_settings(arguments.settings));
     return write_results(arguments, files,
                          device::accept_device(terminal, terminal, options_of(arguments)),
                          terminal.info());
   } catch (const AcceptanceStopped&) {
-    if (device::StopOnSignals::asked()) {
+    if (device::StopOnSignals::stop_requested()) {
       std::cerr << "touchtrial: " << device::StopOnSignals::message() << "; nothing was written\n";
       return device::StopOnSignals::exit_code();
     }
@@ -180,12 +182,13 @@ int accept_on_cable(const AcceptArguments& arguments) {
   }
 }
 
-int accept_one(const AcceptArguments& arguments) {
+int run_acceptance(const AcceptArguments& arguments) {
   if (arguments.driver.empty() == arguments.emulated.empty()) {
     throw UsageError(
-        "device accept: name a driver, as touchtrial device list does, or a model with --emulate");
+        "device accept: name a driver from `touchtrial device list`, or a model with --emulate");
   }
-  return arguments.emulated.empty() ? accept_on_cable(arguments) : rehearse_on_model(arguments);
+  return arguments.emulated.empty() ? accept_connected_device(arguments)
+                                    : rehearse_on_model(arguments);
 }
 
 }  // namespace
@@ -198,8 +201,8 @@ void add_device_accept_command(CLI::App& device, Action& action) {
                             "walls; writes the certificate that sessions require");
   add_driver_argument(*command, "NAME", arguments->driver);
   command->add_option("--emulate", arguments->emulated,
-                      "Rehearse on a device model (its name, a product or a file) in virtual time; "
-                      "does not test a device");
+                      "Rehearse on a device model (its name, a product or a file) in virtual time, "
+                      "without testing a device");
   add_settings_option(*command, arguments->settings);
   command->add_option("--certificate", arguments->certificate,
                       "Certificate to write (default: NAME-certificate.json)");
@@ -210,7 +213,7 @@ void add_device_accept_command(CLI::App& device, Action& action) {
                                                      device::kAcceptanceSteps.end())));
   command->add_flag("--thermal", arguments->thermal, "Also hold a weight for twenty minutes");
   add_json_flag(*command, arguments->json);
-  command->callback([=, &action] { action = [=] { return accept_one(*arguments); }; });
+  command->callback([=, &action] { action = [=] { return run_acceptance(*arguments); }; });
 }
 
 }  // namespace touchtrial::app

@@ -35,7 +35,7 @@ std::string push_cell(const std::optional<device::PushResult>& push) {
 analysis::Table table_of_axes(const device::Certificate& certificate) {
   analysis::Table table{"axes",
                         "Each axis of the device frame (x right, y up, z towards the person). "
-                        "Numbers have the half-width of their interval of about 95 %.",
+                        "Numbers after ± are half-widths of intervals of about 95 %.",
                         {{"axis", analysis::Align::left},
                          {"push along it", analysis::Align::right},
                          {"push against it", analysis::Align::right},
@@ -70,40 +70,41 @@ analysis::Definitions device_figures(const device::Certificate& certificate) {
     entries.emplace_back("stiffest stable wall", fmt::format("{:.2f} N/mm; the trials ended by {}",
                                                              wall.stable_n_per_mm, wall.ended));
     if (wall.oscillates_n_per_mm > 0.0) {
-      // b = K (T/2 + delay) at the edge; T is one tick.
+      // At the limit of stability, the damping is b = K (T/2 + delay), where T is one tick.
       const auto delay = certificate.mean_of(&device::AxisResult::delay_ms);
       const double damping = wall.oscillates_n_per_mm * (0.5 + (delay ? delay->value : 0.0));
-      entries.emplace_back("first wall that swings",
+      entries.emplace_back("first oscillating wall",
                            fmt::format("{:.2f} N/mm, where {}K (T/2 + delay) is {:.2f} N s/m",
                                        wall.oscillates_n_per_mm,
                                        delay ? "" : "(delay unknown, taken as 0) ", damping));
     }
   }
   if (certificate.warm) {
-    entries.emplace_back("load's force at first, and after twenty minutes",
+    entries.emplace_back("holding force at the start, and after twenty minutes",
                          fmt::format("{:.3f} N and {:.3f} N", certificate.warm->before_n,
                                      certificate.warm->after_n));
   }
   return figures;
 }
 
-/// One panel an axis, with a line of `part`; without any, none.
+/// Adds the figure with one panel per axis that plots `part`; nothing if no axis has data.
 void add_curves(analysis::Section& section, analysis::Figure figure, analysis::Axis x,
                 analysis::Axis y, const std::vector<device::AxisCurves>& curves,
                 std::vector<std::pair<double, double>> device::AxisCurves::*part) {
-  for (const device::AxisCurves& one : curves) {
-    if ((one.*part).empty()) continue;
+  for (const device::AxisCurves& axis : curves) {
+    if ((axis.*part).empty()) continue;
     analysis::Layer line{.kind = analysis::LayerKind::line,
-                         .name = "axis " + std::string(device::name_of(one.axis)),
+                         .name = "axis " + std::string(device::name_of(axis.axis)),
                          .colour = analysis::series_colour(0)};
-    for (const auto& [at, value] : one.*part) line.rows.push_back({.x = at, .y = value});
+    for (const auto& [abscissa, ordinate] : axis.*part)
+      line.rows.push_back({.x = abscissa, .y = ordinate});
     figure.panels.push_back({.title = line.name, .x = x, .y = y, .layers = {line}});
   }
   if (figure.panels.empty()) return;
-  figure.across = 3;
+  figure.panels_per_row = 3;
   analysis::Picture picture{figure.id, figure.caption, figure.alt, ""};
   try {
-    picture.svg = analysis::drawn(figure, analysis::FigureFormat::svg);
+    picture.svg = analysis::draw_figure(figure, analysis::FigureFormat::svg);
   } catch (const Error& error) {
     spdlog::warn("{}", error.what());
   }
@@ -119,45 +120,43 @@ analysis::Section results_of(const device::Certificate& certificate) {
 
 analysis::Section curves_of(const device::Acceptance& acceptance) {
   analysis::Section section{"curves", "Curves", {}};
-  analysis::Figure friction = analysis::figure_named("friction", "", false, analysis::kPage_cm);
+  analysis::Figure friction = analysis::empty_figure("friction", "", false, analysis::kPage_cm);
   friction.caption =
-      "Slow strokes: commanded force without the load over the handle's place. Half the height of "
-      "a "
-      "loop is friction.";
-  friction.alt = "Commanded force over place, a loop for each axis.";
-  add_curves(section, std::move(friction), {.label = "place, mm"}, {.label = "force, N"},
+      "Slow strokes: commanded force without the load over the handle's position. Half the height "
+      "of a loop is friction.";
+  friction.alt = "Commanded force over position, one loop per axis.";
+  add_curves(section, std::move(friction), {.label = "position, mm"}, {.label = "force, N"},
              acceptance.curves, &device::AxisCurves::loop);
-  analysis::Figure delay = analysis::figure_named("delay", "", false, analysis::kPage_cm);
+  analysis::Figure delay = analysis::empty_figure("delay", "", false, analysis::kPage_cm);
   delay.caption =
-      "Bend of the path by time after the push reverses. The peak is the delay, for soft arms "
-      "whose "
-      "delay cannot be fitted with mass and damping.";
-  delay.alt = "Bend over delay, a line for each axis.";
+      "Bend of the path over the time since the push reversed. The peak is the delay; it serves "
+      "soft arms, whose delay cannot be fitted together with mass and damping.";
+  delay.alt = "Bend over delay, one line per axis.";
   add_curves(section, std::move(delay), {.label = "delay, ms"}, {.label = "bend, mm"},
-             acceptance.curves, &device::AxisCurves::by_delay);
+             acceptance.curves, &device::AxisCurves::bend_by_delay);
   return section;
 }
 
 analysis::Section verdict_of(const device::Certificate& certificate) {
   analysis::Section section{"verdict", "Verdict", {}};
   const std::vector<std::string> failures = certificate.failures();
-  section.blocks.emplace_back(analysis::Cited{
+  section.blocks.emplace_back(analysis::CitedText{
       failures.empty() ? "Every requirement of a session with people was measured and is met."
-                       : "No session with people runs on this device.",
+                       : "Sessions with people cannot run on this device.",
       {},
       failures.empty() ? "Passed." : "Failed."});
   if (!failures.empty()) section.blocks.emplace_back(analysis::Warnings{failures, "Why"});
   if (!certificate.not_measured.empty()) {
     analysis::Warnings missing{{}, "Not measured"};
-    for (const device::NotMeasured& one : certificate.not_measured) {
-      missing.sentences.push_back(one.what + ": " + one.why);
+    for (const device::NotMeasured& gap : certificate.not_measured) {
+      missing.sentences.push_back(gap.measurement + ": " + gap.reason);
     }
     section.blocks.emplace_back(std::move(missing));
   }
   return section;
 }
 
-/// Without its curves.
+/// The document without curves.
 analysis::Document document_of(const device::Certificate& certificate) {
   analysis::Document document;
   document.title = "Acceptance of " + certificate.driver +

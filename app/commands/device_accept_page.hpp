@@ -13,7 +13,7 @@ namespace touchtrial::app {
 [[nodiscard]] std::string acceptance_page(const device::Acceptance& acceptance);
 
 /// \return verdict and numbers
-/// \param width  of a line, columns
+/// \param width  width of a line, columns
 [[nodiscard]] std::string acceptance_text(const device::Certificate& certificate,
                                           std::size_t width);
 

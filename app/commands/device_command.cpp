@@ -1,5 +1,5 @@
-// device: force-feedback devices; device list: connected devices; device initialise: homes a
-// device; device models: models for rehearsals.
+// device: adds list, initialise (homes a device) and models; other subcommands have their own
+// files.
 #include "analysis/report/text_table.hpp"
 #include "app/commands/commands.hpp"
 #include "app/terminal/console.hpp"
@@ -50,14 +50,14 @@ std::string line_of(const Row& row, const std::array<std::size_t, kColumns>& wid
   return line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
 }
 
-/// \return further names that a driver serves, "touch, omni"; may be empty
-std::string served_by(const std::string& driver) {
+/// \return the other names of a driver, for instance "touch, omni"; may be empty
+std::string other_names_of(const std::string& driver) {
   const auto names = device::device_driver(driver).names();
   return fmt::format("{}", fmt::join(names.begin() + 1, names.end(), ", "));
 }
 
-/// One row for each device. Lines below it state what it lacks, what a study must consider, and,
-/// below a driver's first row, the products that it serves.
+/// One row per device. The lines below it state what it lacks and what a study must consider; below
+/// a driver's first row, also the driver's other names.
 std::string listing_text(const std::vector<device::DeviceListing>& listings) {
   const Row header = {"driver", "state", "model", "serial", "where"};
   std::array<std::size_t, kColumns> widths{};
@@ -72,9 +72,9 @@ std::string listing_text(const std::vector<device::DeviceListing>& listings) {
   std::string driver;
   for (const device::DeviceListing& listing : listings) {
     text += line_of(row_of(listing), widths);
-    const std::string served = served_by(listing.driver);
-    if (listing.driver != driver && !served.empty()) {
-      text += analysis::wrapped("  ", "also by the names " + served);
+    const std::string other_names = other_names_of(listing.driver);
+    if (listing.driver != driver && !other_names.empty()) {
+      text += analysis::wrapped("  ", "also known as " + other_names);
     }
     driver = listing.driver;
     for (const std::string& missing : listing.missing) text += analysis::wrapped("  - ", missing);
@@ -109,7 +109,7 @@ std::string listing_json(const std::vector<device::DeviceListing>& listings) {
 }
 
 int list(const ListArguments& arguments) {
-  const auto listings = device::list_devices(device::device_settings_for(arguments.settings));
+  const auto listings = device::list_devices(device::load_device_settings(arguments.settings));
   print(arguments.json ? listing_json(listings) : listing_text(listings));
   return 0;
 }
@@ -117,7 +117,7 @@ int list(const ListArguments& arguments) {
 void add_device_list_command(CLI::App& device, Action& action) {
   auto arguments = std::make_shared<ListArguments>();
   CLI::App* command = device.add_subcommand(
-      "list", "List connected devices, their drivers, and what each still needs");
+      "list", "List connected devices, their drivers, and what they still need");
   add_settings_option(*command, arguments->settings);
   add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return list(*arguments); }; });
@@ -134,13 +134,13 @@ int initialise(const InitialiseArguments& arguments) {
   if (!driver.initialise) {
     throw UsageError(driver.name +
                      ": cannot move itself to its axes' origins; touchtrial device test " +
-                     driver.name + " says what a person has to do");
+                     driver.name + " explains what a person must do");
   }
   confirm(driver.name +
               ": the arm will move by itself, with force, through its whole range; take "
               "your hands and everything else away from it",
           arguments.yes);
-  print(driver.name + " " + driver.initialise(device::device_settings_for(arguments.settings)) +
+  print(driver.name + " " + driver.initialise(device::load_device_settings(arguments.settings)) +
         "\n");
   return 0;
 }
@@ -155,13 +155,15 @@ void add_device_initialise_command(CLI::App& device, Action& action) {
   command->callback([=, &action] { action = [=] { return initialise(*arguments); }; });
 }
 
-/// A model's number: "-" if its stage is omitted or the number is unknown, "?" after a guess.
-std::string number_of(const device::DeviceModel& model, const std::string& key, double number) {
+/// A number of a model: "-" if it is unknown or the model omits the effect; with "?" if it is a
+/// guess.
+std::string model_number_text(const device::DeviceModel& model, const std::string& key,
+                              double number) {
   if (number == 0.0) return "-";
-  const auto known = model.provenance.find(key);
-  const bool guessed =
-      known != model.provenance.end() && known->second.confidence == device::Confidence::guess;
-  return fmt::format("{:g}{}", number, guessed ? "?" : "");
+  const auto entry = model.provenance.find(key);
+  const bool is_guess =
+      entry != model.provenance.end() && entry->second.confidence == device::Confidence::guess;
+  return fmt::format("{:g}{}", number, is_guess ? "?" : "");
 }
 
 std::string models_text() {
@@ -169,17 +171,17 @@ std::string models_text() {
       {"model", "device", "mass kg", "friction N", "step mm", "peak N", "continuous N", "delay"},
       {0, 1});
   for (const device::DeviceModel& m : device::shipped_device_models()) {
-    table.add({m.name, m.title, number_of(m, "mass_kg", m.mass_kg),
-               number_of(m, "coulomb_n", m.coulomb_n),
-               number_of(m, "position_step_mm", m.position_step_mm),
-               number_of(m, "max_force_n", m.max_force_n),
-               number_of(m, "continuous_force_n", m.continuous_force_n),
-               number_of(m, "delay_ticks", m.delay_ticks)});
+    table.add({m.name, m.title, model_number_text(m, "mass_kg", m.mass_kg),
+               model_number_text(m, "coulomb_n", m.coulomb_n),
+               model_number_text(m, "position_step_mm", m.position_step_mm),
+               model_number_text(m, "max_force_n", m.max_force_n),
+               model_number_text(m, "continuous_force_n", m.continuous_force_n),
+               model_number_text(m, "delay_ticks", m.delay_ticks)});
   }
   return table.text() + "\n" +
          analysis::wrapped("",
                            "?: a guess. The delay is in ticks of 1 ms. No number was measured on a "
-                           "device; --json has the source of each.");
+                           "device; --json gives the source of each.");
 }
 
 std::string models_json() {

@@ -38,7 +38,7 @@ struct ConformArguments {
   bool json = false;
 };
 
-/// A file rather than a driver's name.
+/// Whether the target is a file, not a driver's name.
 bool is_library(const std::string& target) {
   return target.find('/') != std::string::npos || target.ends_with(".so");
 }
@@ -60,7 +60,7 @@ int count_of(const std::vector<device::ConformanceCheck>& checks,
   return static_cast<int>(std::ranges::count(checks, outcome, &device::ConformanceCheck::outcome));
 }
 
-/// One line for each check; below failed ones, what a driver must do.
+/// One line per check; below a failed one, what the driver must do.
 std::string conformance_text(const std::string& target,
                              const std::vector<device::ConformanceCheck>& checks) {
   std::string text = target + "\n";
@@ -105,7 +105,7 @@ device::ConformanceOptions options_of(const ConformArguments& arguments) {
   device::ConformanceOptions options;
   options.seconds = arguments.seconds;
   options.pushes = arguments.force;
-  options.stopped = device::StopOnSignals::asked;
+  options.stopped = device::StopOnSignals::stop_requested;
   options.guard = [](device::HapticDevice& device) {
     return std::make_shared<SignalGuard>(device);
   };
@@ -117,24 +117,23 @@ device::ConformanceOptions options_of(const ConformArguments& arguments) {
 }
 
 /// \throws UsageError if the target cannot be checked in this way
-void expect_checkable(const ConformArguments& arguments, bool is_plugin) {
+void require_checkable(const ConformArguments& arguments, bool is_plugin) {
   if (arguments.target == device::kMouseDriver) {
     throw UsageError(
         "conform: the mouse needs a window and a hand, and has no motors; try it in a session, "
-        "with "
-        "`touchtrial run STUDY --db pilot.db --device mouse --pilot`");
+        "with `touchtrial run STUDY --db pilot.db --device mouse --pilot`");
   }
   if (arguments.force && !is_plugin) {
-    throw UsageError("conform: what the motors of '" + one_line(arguments.target) +
-                     "' are told cannot be seen; --force is for plug-ins that export "
+    throw UsageError("conform: the commands to the motors of '" + one_line(arguments.target) +
+                     "' cannot be observed; --force requires a plug-in that exports "
                      "touchtrial_device_observe_v1");
   }
 }
 
 /// Runs the checks on a real-time thread, as the servo does.
-std::vector<device::ConformanceCheck> checks_of(const ConformArguments& arguments,
-                                                const device::DeviceSettings& settings,
-                                                bool is_plugin, device::SchedulingPolicy policy) {
+std::vector<device::ConformanceCheck> run_checks(const ConformArguments& arguments,
+                                                 const device::DeviceSettings& settings,
+                                                 bool is_plugin, device::SchedulingPolicy policy) {
   const device::ConformanceOptions options = options_of(arguments);
   device::PacedClock clock(device::PacedClock::default_spin(policy));
   if (is_plugin) return device::check_plugin_conformance(settings.plugin, clock, options);
@@ -145,13 +144,13 @@ std::vector<device::ConformanceCheck> checks_of(const ConformArguments& argument
 }
 
 int conform(ConformArguments arguments) {
-  device::DeviceSettings settings = device::device_settings_for(arguments.settings);
+  device::DeviceSettings settings = device::load_device_settings(arguments.settings);
   const bool is_file = is_library(arguments.target);
   // A name without a slash would be searched for in the system's folders.
   if (is_file) settings.plugin.library = std::filesystem::absolute(arguments.target);
   if (!is_file) arguments.target = device::device_driver(arguments.target).name;
   const bool is_plugin = is_file || arguments.target == kPluginDriver;
-  expect_checkable(arguments, is_plugin);
+  require_checkable(arguments, is_plugin);
   if (arguments.force) {
     confirm(fmt::format("{}: forces of {} N push the handle along each axis; rest it on the table "
                         "or hold it lightly",
@@ -161,10 +160,10 @@ int conform(ConformArguments arguments) {
   std::vector<device::ConformanceCheck> checks;
   device::ServoThread thread;
   const device::SchedulingPolicy policy = thread.scheduling().policy;
-  thread.run([&] { checks = checks_of(arguments, settings, is_plugin, policy); });
+  thread.run([&] { checks = run_checks(arguments, settings, is_plugin, policy); });
   print(arguments.json ? conformance_json(arguments.target, checks)
                        : conformance_text(arguments.target, checks));
-  if (device::StopOnSignals::asked()) {
+  if (device::StopOnSignals::stop_requested()) {
     std::fprintf(stderr, "touchtrial: %s\n", device::StopOnSignals::message().c_str());
     return device::StopOnSignals::exit_code();
   }

@@ -1,4 +1,4 @@
-// device fit: whether a study's plane and stiffness fit a device, which need not be connected.
+// device fit: checks whether a study's plane and stiffness fit a device, even if not connected.
 #include "app/commands/commands.hpp"
 #include "app/commands/device_words.hpp"
 #include "app/commands/study_inputs.hpp"
@@ -33,10 +33,10 @@ namespace fs = std::filesystem;
 
 /// The origin of a workspace.
 enum class WorkspaceSource {
-  maker,   ///< the manufacturer's data for all these devices; none was read
-  model,   ///< a device model; none was read
+  maker,   ///< the manufacturer's data; no device was read
+  model,   ///< a device model; no device was read
   device,  ///< the connected device
-  none,    ///< the device reports positions on the plane, regardless of its size
+  none,    ///< the device reports positions on a plane of any size
 };
 
 struct StudyFit {
@@ -47,9 +47,9 @@ struct StudyFit {
   PlaneGeometry plane;
   std::optional<device::Workspace> workspace;
   WorkspaceSource source = WorkspaceSource::none;
-  device::WorkspaceFit fit;
+  device::WorkspaceFit result;
   device::RenderedStiffness rendered;
-  /// Of the device or its model; without both, only the scale.
+  /// Limits of the device or its model; if neither is known, only the scale is set.
   device::DeviceInfo limits;
 };
 
@@ -73,7 +73,7 @@ const char* word_for(WorkspaceSource source) {
 
 std::string source_words(const StudyFit& fit) {
   if (fit.source == WorkspaceSource::device) return "as the device reports";
-  if (fit.source == WorkspaceSource::maker) return "as its maker states; no device was read";
+  if (fit.source == WorkspaceSource::maker) return "as stated by its maker; no device was read";
   return "of the device model " + fit.model.value_or("") + "; no device was read";
 }
 
@@ -103,9 +103,9 @@ ordered_json plane_json(const PlaneGeometry& plane) {
 
 ordered_json workspace_json(const StudyFit& fit) {
   if (!fit.workspace) return nullptr;
-  const bool rounded = fit.workspace->shape == device::WorkspaceShape::ellipsoid;
+  const bool is_rounded = fit.workspace->shape == device::WorkspaceShape::ellipsoid;
   return {{"from", word_for(fit.source)},
-          {"shape", rounded ? "ellipsoid" : "box"},
+          {"shape", is_rounded ? "ellipsoid" : "box"},
           {"least_mm", vec_json(fit.workspace->min_mm)},
           {"greatest_mm", vec_json(fit.workspace->max_mm)}};
 }
@@ -114,54 +114,53 @@ ordered_json workspace_json(const StudyFit& fit) {
 /// \throws FileError if a picture cannot be read
 PlaneGeometry common_plane_of(const study::Study& study) {
   PlaneGeometry plane{study.rendering.pitch_mm, 0, 0};
-  for (const study::StudyClass& shown : study.classes) {
-    for (const auto& image : shown.images) {
+  for (const study::StudyClass& texture_class : study.classes) {
+    for (const auto& image : texture_class.images) {
       const GreyImage picture = engine::read_grey_image(study.folder / image);
-      const bool first = plane.height_px == 0;
-      plane.height_px = first ? picture.height() : std::min(plane.height_px, picture.height());
-      plane.width_px = first ? picture.width() : std::min(plane.width_px, picture.width());
+      const bool is_first = plane.height_px == 0;
+      plane.height_px = is_first ? picture.height() : std::min(plane.height_px, picture.height());
+      plane.width_px = is_first ? picture.width() : std::min(plane.width_px, picture.width());
     }
   }
   return plane;
 }
 
-/// A device by the name from the user or the study.
+/// The device that the user or the study names.
 struct NamedDevice {
   std::string name;
   const device::DeviceDriver* driver = nullptr;  ///< null: it has no driver
   std::optional<device::DeviceModel> model;      ///< used if no device is read
-  bool is_read =
-      true;  ///< whether its driver requires reading the device, and the device can be opened
+  bool may_open = true;  ///< whether the device may be opened to read its values
 };
 
 /// \throws UsageError as device::model_of_device
 NamedDevice device_named(const std::string& name) {
-  NamedDevice named{.name = name, .driver = nullptr, .model = {}};
+  NamedDevice named_device{.name = name, .driver = nullptr, .model = {}};
   for (const device::DeviceDriver& driver : device::device_drivers()) {
-    if (driver.name == name) named.driver = &driver;
+    if (driver.name == name) named_device.driver = &driver;
     for (const device::DeviceProduct& product : driver.products) {
       if (product.name != name) continue;
-      named.driver = &driver;
-      if (!product.model.empty()) named.model = device::device_model(product.model);
+      named_device.driver = &driver;
+      if (!product.model.empty()) named_device.model = device::device_model(product.model);
     }
   }
-  if (named.driver == nullptr) named.model = device::model_of_device(name);
-  return named;
+  if (named_device.driver == nullptr) named_device.model = device::model_of_device(name);
+  return named_device;
 }
 
 /// \throws UsageError if neither the command nor the study names a device; as device_named
 /// \throws StudyError as simulation::device_of
-NamedDevice device_to_fit(const std::string& given, const study::Study& study) {
-  if (!given.empty()) return device_named(given);
+NamedDevice device_to_fit(const std::string& requested_name, const study::Study& study) {
+  if (!requested_name.empty()) return device_named(requested_name);
   if (study.device.empty()) {
-    throw UsageError(one_line(
-        study.source + ": names no device; give --device, or name one by /rendering/device"));
+    throw UsageError(
+        one_line(study.source + ": names no device; give --device, or set /rendering/device"));
   }
   const device::DeviceModel model = simulation::device_of(study);
   return {study.device, device::driver_of_model(model.name), model, false};
 }
 
-/// Fills in from the model what opening the device would give.
+/// Fills in the workspace and the limits from the model.
 void fill_from_model(const device::DeviceModel& model, StudyFit& fit) {
   fit.model = model.name;
   fit.limits.max_stiffness_n_per_mm = model.max_stiffness_n_per_mm;
@@ -172,11 +171,14 @@ void fill_from_model(const device::DeviceModel& model, StudyFit& fit) {
 
 /// Fills in the workspace and the limits of the device.
 /// \throws DeviceError if the values can only be read from the device and it cannot be opened
-void fill_device(const NamedDevice& named, const device::DeviceSettings& settings, StudyFit& fit) {
-  if (named.driver == nullptr || !named.is_read) return fill_from_model(*named.model, fit);
-  if (named.driver->workspace_is_known) {
-    if (!named.driver->nominal_workspace) return;
-    fit.workspace = device::scaled(*named.driver->nominal_workspace, fit.limits.scale.length);
+void fill_device(const NamedDevice& named_device, const device::DeviceSettings& settings,
+                 StudyFit& fit) {
+  if (named_device.driver == nullptr || !named_device.may_open)
+    return fill_from_model(*named_device.model, fit);
+  if (named_device.driver->workspace_is_known) {
+    if (!named_device.driver->nominal_workspace) return;
+    fit.workspace =
+        device::scaled(*named_device.driver->nominal_workspace, fit.limits.scale.length);
     fit.source = WorkspaceSource::maker;
     return;
   }
@@ -185,28 +187,28 @@ void fill_device(const NamedDevice& named, const device::DeviceSettings& setting
     fit.workspace = fit.limits.workspace;
     fit.source = WorkspaceSource::device;
   } catch (const DeviceError&) {
-    if (!named.model) throw;
-    fill_from_model(*named.model, fit);
+    if (!named_device.model) throw;
+    fill_from_model(*named_device.model, fit);
   }
 }
 
-/// \param orientation  nothing: that of the settings
+/// \param orientation  empty: as in the settings
 /// \throws DeviceError as fill_device
 /// \throws FileError as common_plane_of
-StudyFit fit_of(const study::Study& study, const NamedDevice& named,
+StudyFit fit_of(const study::Study& study, const NamedDevice& named_device,
                 const device::DeviceSettings& settings,
                 std::optional<device::PlaneOrientation> orientation) {
   StudyFit fit;
   fit.study = study.name;
-  fit.device = named.name;
-  fit.driver = named.driver != nullptr ? named.driver->name : "";
+  fit.device = named_device.name;
+  fit.driver = named_device.driver != nullptr ? named_device.driver->name : "";
   const device::DeviceUse use = settings.use_of(fit.driver);
-  fit.limits.name = named.name;
+  fit.limits.name = named_device.name;
   fit.limits.scale = use.scale;
-  fill_device(named, settings, fit);
+  fill_device(named_device, settings, fit);
   fit.rendered = rendered_stiffness(study.rendering);
   fit.plane = common_plane_of(study);
-  fit.fit = device::fit_plane(fit.plane, fit.workspace, use, orientation);
+  fit.result = device::fit_plane(fit.plane, fit.workspace, use, orientation);
   return fit;
 }
 
@@ -225,18 +227,18 @@ std::string fit_text(const StudyFit& fit) {
                   fit.plane.width_mm(), fit.plane.height_mm(), fit.plane.width_px,
                   fit.plane.height_px, fit.plane.pitch_mm, fit.device);
   text += workspace_text(fit) + stiffness_text(fit);
-  if (!fit.fit.fits) return text;
+  if (!fit.result.fits) return text;
   if (!fit.workspace && fit.model) return text;
-  if (!fit.fit.placement) return text + "fits\n";
-  const Vec3 origin = fit.fit.placement->origin_mm;
+  if (!fit.result.placement) return text + "fits\n";
+  const Vec3 origin = fit.result.placement->origin_mm;
   return text + fmt::format(
                     "fits: {}, top-left corner at {:.1f}, {:.1f}, {:.1f} mm (right, up, "
                     "towards the person), {:.0f} mm around it\n",
-                    word_for(fit.fit.placement->orientation), origin.x, origin.y, origin.z,
+                    word_for(fit.result.placement->orientation), origin.x, origin.y, origin.z,
                     device::kWorkspaceMarginMm);
 }
 
-/// \param limit  0: not known
+/// \param limit  0: unknown
 ordered_json limit_json(double limit) {
   return limit > 0.0 ? ordered_json(limit) : ordered_json(nullptr);
 }
@@ -255,7 +257,7 @@ std::string fit_json(const StudyFit& fit) {
                          {"device", fit.device},
                          {"driver", fit.driver},
                          {"model", fit.model ? ordered_json(*fit.model) : ordered_json(nullptr)},
-                         {"fits", fit.fit.fits},
+                         {"fits", fit.result.fits},
                          {"margin_mm", device::kWorkspaceMarginMm},
                          {"plane", plane_json(fit.plane)},
                          {"workspace", workspace_json(fit)},
@@ -263,11 +265,12 @@ std::string fit_json(const StudyFit& fit) {
                          {"orientation", nullptr},
                          {"origin_mm", nullptr},
                          {"crop", nullptr}};
-  if (fit.fit.placement) {
-    object["orientation"] = word_for(fit.fit.placement->orientation);
-    object["origin_mm"] = vec_json(fit.fit.placement->origin_mm);
+  if (fit.result.placement) {
+    object["orientation"] = word_for(fit.result.placement->orientation);
+    object["origin_mm"] = vec_json(fit.result.placement->origin_mm);
   }
-  if (!fit.fit.fits && fit.fit.largest.width_px > 0) object["crop"] = plane_json(fit.fit.largest);
+  if (!fit.result.fits && fit.result.largest.width_px > 0)
+    object["crop"] = plane_json(fit.result.largest);
   return json_text(object);
 }
 
@@ -276,7 +279,7 @@ struct DeviceFitArguments {
   std::string device;  ///< empty: the study's
   std::optional<device::PlaneOrientation> orientation;
   fs::path settings;
-  fs::path certificate;  ///< empty: NAME-certificate.json, if it is there
+  fs::path certificate;  ///< empty: NAME-certificate.json, if it exists
   bool json = false;
 };
 
@@ -298,17 +301,17 @@ void check_with_certificate(const fs::path& file, const study::Study& study, con
   device::require_stable(certificate, study.rendering.stiffness_n_per_mm);
 }
 
-int fit(const DeviceFitArguments& arguments) {
-  const device::DeviceSettings settings = device::device_settings_for(arguments.settings);
+int check_fit(const DeviceFitArguments& arguments) {
+  const device::DeviceSettings settings = device::load_device_settings(arguments.settings);
   const study::Study study = study::load_study(arguments.study);
-  const NamedDevice named = device_to_fit(arguments.device, study);
-  const StudyFit fit = fit_of(study, named, settings, arguments.orientation);
+  const NamedDevice named_device = device_to_fit(arguments.device, study);
+  const StudyFit fit = fit_of(study, named_device, settings, arguments.orientation);
   print(arguments.json ? fit_json(fit) : fit_text(fit));
-  if (!fit.fit.fits) {
-    throw DeviceError(device::misfit_text(fit.device, fit.plane, *fit.workspace, fit.fit));
+  if (!fit.result.fits) {
+    throw DeviceError(device::misfit_text(fit.device, fit.plane, *fit.workspace, fit.result));
   }
   const fs::path default_file = fit.driver + "-certificate.json";
-  const bool has_default = !fit.driver.empty() && is_there(default_file);
+  const bool has_default = !fit.driver.empty() && path_exists(default_file);
   if (!arguments.certificate.empty() || has_default) {
     check_with_certificate(arguments.certificate.empty() ? default_file : arguments.certificate,
                            study, fit);
@@ -332,23 +335,23 @@ void add_device_fit_command(CLI::App& device, Action& action) {
   add_study_argument(*command, arguments->study);
   command
       ->add_option("--device", arguments->device,
-                   "Driver, product or device model, as touchtrial device list and device models "
-                   "name them, or a model's file (default: the study's). For a product that cannot "
-                   "be opened, its model is used")
+                   "Driver, product or device model from touchtrial device list and device models, "
+                   "or a model's file (default: the study's). The model stands in for a product "
+                   "that cannot be opened")
       ->type_name("NAME");
   command
       ->add_option_function<std::string>(
           "--orientation",
           [=](const std::string& word) { arguments->orientation = orientations.at(word); },
-          "horizontal (a table) or vertical (a wall); default: that of the device settings, else "
+          "horizontal (a table) or vertical (a wall); default: the device settings', or "
           "horizontal")
       ->check(CLI::IsMember({"horizontal", "vertical"}));
   add_settings_option(*command, arguments->settings);
   command->add_option("--certificate", arguments->certificate,
                       "Certificate whose stiffest wall limits the study (default: "
-                      "NAME-certificate.json, if it is there)");
+                      "NAME-certificate.json, if it exists)");
   add_json_flag(*command, arguments->json);
-  command->callback([=, &action] { action = [=] { return fit(*arguments); }; });
+  command->callback([=, &action] { action = [=] { return check_fit(*arguments); }; });
 }
 
 }  // namespace touchtrial::app

@@ -1,5 +1,5 @@
-// device test: live readings of a device while a person feels a plain wall, then a texture; or
-// without force.
+// device test: shows live readings of a device while a person feels a plain wall, then a texture;
+// or without force.
 #include "app/commands/commands.hpp"
 #include "app/commands/device_words.hpp"
 #include "app/commands/test_texture.hpp"
@@ -34,15 +34,15 @@ namespace fs = std::filesystem;
 
 struct TestPhase {
   std::string name;  ///< "watch", "wall" or "texture"
-  device::ForceSequence::Part felt;
+  device::ForceSequence::Part totals;
 };
 
 struct DeviceTest {
   device::DeviceInfo device;
   device::SchedulingObtained scheduling;
-  std::optional<device::ServoReport> run;  ///< nothing if it was stopped before it began
+  std::optional<device::ServoReport> run;  ///< empty if stopped before the start
   bool quit = false;                       ///< the person pressed q
-  std::vector<TestPhase> phases;           ///< those that began
+  std::vector<TestPhase> phases;           ///< only those that started
   fs::path fault_record;                   ///< empty unless a fault was recorded
 };
 
@@ -53,8 +53,8 @@ double seconds_of(std::int64_t ticks, const device::ServoReport& report) {
 
 std::string phase_text(const TestPhase& phase, const device::ServoReport& run) {
   return fmt::format("{:<8} {:5.1f} s, contact {:5.1f} s, maximum force {:.2f} N\n", phase.name,
-                     seconds_of(phase.felt.ticks, run), seconds_of(phase.felt.contact_ticks, run),
-                     phase.felt.max_force_n);
+                     seconds_of(phase.totals.ticks, run),
+                     seconds_of(phase.totals.contact_ticks, run), phase.totals.max_force_n);
 }
 
 const char* words_for(const device::ServoReport& run, bool quit) {
@@ -63,9 +63,9 @@ const char* words_for(const device::ServoReport& run, bool quit) {
     case device::ServoEnd::time_limit:
       return "time was up";
     case device::ServoEnd::hand_stopped:
-      return quit ? "stopped by q" : "the device had no more motion";
+      return quit ? "stopped by q" : "end of the device's recording";
     case device::ServoEnd::comfort_stop:
-      return "let go on request";
+      return "force released on request";
     case device::ServoEnd::fault:
       break;
   }
@@ -75,7 +75,7 @@ const char* words_for(const device::ServoReport& run, bool quit) {
 std::string run_text(const device::ServoReport& run, bool quit) {
   const bool is_fault = run.fault != device::SafetyFault::none;
   return fmt::format(
-      "ticks:   {:.1f} per second, {} left out; {} forces changed by safety (limit {:.2f} N)\n"
+      "ticks:   {:.1f} per second, {} skipped; {} forces changed by safety (limit {:.2f} N)\n"
       "late:    half within {:.0f} us, 99 % {:.0f} us, 99.9 % {:.0f} us, worst {:.0f} us\n"
       "ended:   {}{}\n",
       run.rate_hz, run.overruns, run.limited_ticks, run.force_limit_n, run.lateness.p50_us,
@@ -83,26 +83,27 @@ std::string run_text(const device::ServoReport& run, bool quit) {
       is_fault ? ", " + fault_names(run) : "");
 }
 
-/// Only for devices that report it.
+/// Empty unless the device reports it.
 std::string delivered_text(const device::ServoReport& run) {
   if (run.delivered_share == 0.0) return "";
   return fmt::format("device:  reports {:.0f} % of the commanded force\n",
                      100.0 * run.delivered_share);
 }
 
-std::string scheduling_text(const device::SchedulingObtained& had) {
-  const std::string got = had.policy == device::SchedulingPolicy::fifo
-                              ? fmt::format("real time, priority {}", had.priority)
-                              : std::string("as an ordinary thread");
-  return "servo:   " + got + (had.memory_locked ? ", memory locked" : ", memory not locked") +
-         (had.reason.empty() ? "" : "; " + had.reason) + "\n";
+std::string scheduling_text(const device::SchedulingObtained& scheduling) {
+  const std::string words = scheduling.policy == device::SchedulingPolicy::fifo
+                                ? fmt::format("real time, priority {}", scheduling.priority)
+                                : std::string("as an ordinary thread");
+  return "servo:   " + words +
+         (scheduling.memory_locked ? ", memory locked" : ", memory not locked") +
+         (scheduling.reason.empty() ? "" : "; " + scheduling.reason) + "\n";
 }
 
 nlohmann::ordered_json phase_json(const TestPhase& phase, const device::ServoReport& run) {
   return {{"phase", phase.name},
-          {"ticks", phase.felt.ticks},
-          {"contact_s", seconds_of(phase.felt.contact_ticks, run)},
-          {"greatest_force_n", phase.felt.max_force_n}};
+          {"ticks", phase.totals.ticks},
+          {"contact_s", seconds_of(phase.totals.contact_ticks, run)},
+          {"greatest_force_n", phase.totals.max_force_n}};
 }
 
 nlohmann::ordered_json run_json(const device::ServoReport& run) {
@@ -158,14 +159,14 @@ std::string test_json(const DeviceTest& test) {
   return json_text(object);
 }
 
-/// The time in which the texture replaces the wall.
+/// The duration of the transition from wall to texture.
 constexpr double kBlendS = 0.2;
 /// 40 mm, which fits the workspace of every supported device.
 constexpr int kPlacedSidePx = 200;
 /// 100 mm, for devices whose plane may have any size.
 constexpr int kFreeSidePx = 500;
 constexpr double kTestS = 30.0;
-/// Longer than anybody would watch.
+/// Practically unlimited.
 constexpr double kWatchS = 7.0 * 86'400.0;
 
 struct TestArguments {
@@ -179,21 +180,21 @@ struct TestArguments {
   fs::path fault_record;
 };
 
-/// The device for the servo: placed, if it has its own frame and force is wanted.
+/// The device for the servo, with the plane placed in its frame unless only readings are requested.
 class DeviceForTest {
  public:
   DeviceForTest(const TestArguments& arguments, const device::DeviceSettings& settings)
       : use_(settings.use_of(arguments.driver)),
-        opened_(device::open_device(arguments.driver, settings)) {
+        device_(device::open_device(arguments.driver, settings)) {
     if (arguments.watch) return;
-    const device::DeviceInfo info = opened_->info();
+    const device::DeviceInfo info = device_->info();
     texture_.emplace(info.workspace ? kPlacedSidePx : kFreeSidePx, info.max_stiffness_n_per_mm);
     const device::WorkspaceFit fit = device::fit_plane(texture_->plane(), info.workspace, use_);
-    if (fit.placement) placed_.emplace(*opened_, *fit.placement);
+    if (fit.placement) placed_device_.emplace(*device_, *fit.placement);
   }
 
   [[nodiscard]] device::HapticDevice& device() noexcept {
-    return placed_ ? static_cast<device::HapticDevice&>(*placed_) : *opened_;
+    return placed_device_ ? static_cast<device::HapticDevice&>(*placed_device_) : *device_;
   }
   [[nodiscard]] const TestTexture& texture() const { return texture_.value(); }
   [[nodiscard]] device::SafetyLimits limits() const noexcept {
@@ -202,9 +203,9 @@ class DeviceForTest {
 
  private:
   device::DeviceUse use_;
-  std::unique_ptr<device::HapticDevice> opened_;
+  std::unique_ptr<device::HapticDevice> device_;
   std::optional<TestTexture> texture_;
-  std::optional<device::PlacedDevice> placed_;
+  std::optional<device::PlacedDevice> placed_device_;
 };
 
 fs::path record_path(const TestArguments& arguments) {
@@ -216,29 +217,30 @@ constexpr const char* kKeys =
     "q ends, space releases the force, Ctrl-C halts at once\n"
     "shown: time, position ({}), force, ticks per second, lateness\n";
 
-/// One run without force, in the device's own frame, ready or not.
+/// One run without force, in the device's own frame, even if the device is not ready.
 void watch(const TestArguments& arguments, device::HapticDevice& device, AttendedRun& run,
            DeviceTest& test) {
   const std::string advice = readiness_in_words(device.readiness());
   if (!advice.empty()) std::fprintf(stderr, "%s: %s\n", arguments.driver.c_str(), advice.c_str());
   std::fputs(fmt::format(kKeys, "right, up, towards you").c_str(), stderr);
-  NoForce none;
-  device::ForceSequence counted(none, none, std::numeric_limits<std::int64_t>::max(), 1);
+  NoForce no_force;
+  device::ForceSequence sequence(no_force, no_force, std::numeric_limits<std::int64_t>::max(), 1);
   const double seconds = arguments.seconds > 0.0 ? arguments.seconds : kWatchS;
-  test.run = run.run([](std::int64_t) { return "watch"; }, counted, counted, seconds);
-  if (test.run) test.phases.push_back({"watch", counted.first()});
+  test.run = run.run([](std::int64_t) { return "watch"; }, sequence, sequence, seconds);
+  if (test.run) test.phases.push_back({"watch", sequence.first()});
 }
 
 /// One run: the wall, then the texture unless only the wall is requested.
-void feel(const TestArguments& arguments, const TestTexture& shown, AttendedRun& run,
+void feel(const TestArguments& arguments, const TestTexture& test_texture, AttendedRun& run,
           DeviceTest& test) {
-  const engine::RenderingModel wall = shown.wall();
-  const engine::RenderingModel texture = shown.texture();
-  session::ModelForce first(wall);
-  session::ModelForce second(texture);
+  const engine::RenderingModel wall = test_texture.wall();
+  const engine::RenderingModel texture = test_texture.texture();
+  session::ModelForce wall_force(wall);
+  session::ModelForce texture_force(texture);
   const double seconds = arguments.seconds > 0.0 ? arguments.seconds : kTestS;
   const double change_s = seconds * (arguments.wall_only ? 2.0 : 0.5);
-  device::ForceSequence sequence(first, second, std::llround(change_s * arguments.rate_hz),
+  device::ForceSequence sequence(wall_force, texture_force,
+                                 std::llround(change_s * arguments.rate_hz),
                                  std::llround(kBlendS * arguments.rate_hz));
   const auto phase = [&](std::int64_t tick) {
     return sequence.is_second(tick) ? "texture" : "wall";
@@ -252,10 +254,9 @@ void feel(const TestArguments& arguments, const TestTexture& shown, AttendedRun&
   if (sequence.second().ticks > 0) test.phases.push_back({"texture", sequence.second()});
 }
 
-/// The result of the command.
 /// \return the exit code
 /// \throws DeviceError if the run ended with a fault
-int outcome_of(const DeviceTest& test, const AttendedRun& run) {
+int exit_code_of(const DeviceTest& test, const AttendedRun& run) {
   if (run.stop() == AttendedStop::signal) {
     std::fprintf(stderr, "touchtrial: %s\n", device::StopOnSignals::message().c_str());
     return device::StopOnSignals::exit_code();
@@ -267,19 +268,19 @@ int outcome_of(const DeviceTest& test, const AttendedRun& run) {
 }
 
 int test_device(const TestArguments& arguments) {
-  require_output_place(record_path(arguments));
-  const device::DeviceSettings settings = device::device_settings_for(arguments.settings);
-  DeviceForTest tested(arguments, settings);
-  AttendedRun run(tested.device(), tested.limits(), arguments.rate_hz);
+  require_output_path(record_path(arguments));
+  const device::DeviceSettings settings = device::load_device_settings(arguments.settings);
+  DeviceForTest device_for_test(arguments, settings);
+  AttendedRun run(device_for_test.device(), device_for_test.limits(), arguments.rate_hz);
   DeviceTest test;
   if (arguments.watch) {
-    test.device = tested.device().info();
-    watch(arguments, tested.device(), run, test);
+    test.device = device_for_test.device().info();
+    watch(arguments, device_for_test.device(), run, test);
   } else {
     run.wait_until_ready(kReadyLimitS);
-    run.let_choose_strength();
-    test.device = tested.device().info();
-    feel(arguments, tested.texture(), run, test);
+    run.enable_strength_keys();
+    test.device = device_for_test.device().info();
+    feel(arguments, device_for_test.texture(), run, test);
   }
   test.scheduling = run.scheduling();
   test.quit = run.stop() == AttendedStop::quit;
@@ -288,7 +289,7 @@ int test_device(const TestArguments& arguments) {
     write_output(test.fault_record, run.flight_record());
   }
   print(arguments.json ? test_json(test) : test_text(test));
-  return outcome_of(test, run);
+  return exit_code_of(test, run);
 }
 
 }  // namespace
@@ -305,10 +306,10 @@ void add_device_test_command(CLI::App& device, Action& action) {
       ->add_option("--seconds", arguments->seconds,
                    "Duration, s (default: 30 for wall and texture together; --watch: until q)")
       ->check(finite_range(0.1, 3600.0));
-  CLI::Option* watch =
-      command->add_flag("--watch", arguments->watch, "Readings only, in the device's own frame");
+  CLI::Option* watch = command->add_flag("--watch", arguments->watch,
+                                         "Show readings only, in the device's own frame");
   add_rate_option(*command, arguments->rate_hz);
-  command->add_flag("--wall-only", arguments->wall_only, "No texture")->excludes(watch);
+  command->add_flag("--wall-only", arguments->wall_only, "Skip the texture")->excludes(watch);
   add_force_flag(*command);
   add_json_flag(*command, arguments->json);
   command->add_option("--fault-record", arguments->fault_record,

@@ -21,7 +21,7 @@ constexpr auto kDeviceFaults = std::to_array<Named<DeviceFault>>(
      {"the vendor's library or the system failed; see touchtrial device list",
       DeviceFault::driver}});
 
-/// The others are faults of the device.
+/// Faults that the device does not report itself.
 constexpr auto kSafetyFaults = std::to_array<Named<SafetyFault>>(
     {{"a position or force was not a number", SafetyFault::not_finite},
      {"emergency stop", SafetyFault::emergency_stop},
@@ -41,10 +41,10 @@ constexpr auto kReadiness = std::to_array<Named<DeviceReadiness>>(
       DeviceReadiness::needs_inkwell},
      {"put the arm at its reset position, with all its links at right angles, and hold it still",
       DeviceReadiness::needs_reset},
-     {"calibrate it as its page in docs/devices says: the rest position, or the vendor's own "
-      "calibration",
+     {"calibrate it as described on its page in docs/devices: the rest position, or the vendor's "
+      "own calibration",
       DeviceReadiness::needs_calibration},
-     {"press the force button at the device, so that its light is on",
+     {"press the force button on the device, so that its light is on",
       DeviceReadiness::needs_force_on}});
 
 }  // namespace

@@ -1,6 +1,7 @@
+// evaluate: prints co-occurrence statistics of pictures and their textures.
 #include "analysis/measures/evaluation_report.hpp"
 #include "app/commands/commands.hpp"
-#include "app/commands/given_pictures.hpp"
+#include "app/commands/input_pictures.hpp"
 #include "app/terminal/console.hpp"
 #include "core/errors.hpp"
 
@@ -22,18 +23,18 @@ struct EvaluateArguments {
   bool json = false;
 };
 
-analysis::EvaluatedImage evaluated(const fs::path& path, const engine::SampleScale& scale,
-                                   bool sweep, const std::function<void()>& order_done) {
-  const GreyImage image = read_given_picture(path, scale);
+analysis::EvaluatedImage evaluate_file(const fs::path& path, const engine::SampleScale& scale,
+                                       bool sweep, const std::function<void()>& on_order_done) {
+  const GreyImage image = read_input_picture(path, scale);
   try {
-    return {path.string(), engine::evaluate_image(image, sweep, order_done)};
+    return {path.string(), engine::evaluate_image(image, sweep, on_order_done)};
   } catch (const std::invalid_argument& error) {
     throw FileError(one_line(path.string()) + ": " + error.what() + "; give a larger image" +
                     (sweep ? " or omit --sweep" : ""));
   }
 }
 
-std::vector<analysis::EvaluatedImage> evaluated(const EvaluateArguments& arguments) {
+std::vector<analysis::EvaluatedImage> evaluate_files(const EvaluateArguments& arguments) {
   const auto bar = progress_bar("evaluating");
   const int steps_of_image = arguments.sweep ? engine::kSweptOrders : 1;
   const int steps = static_cast<int>(arguments.images.size()) * steps_of_image;
@@ -41,14 +42,14 @@ std::vector<analysis::EvaluatedImage> evaluated(const EvaluateArguments& argumen
   std::vector<analysis::EvaluatedImage> images;
   for (const fs::path& path : arguments.images) {
     images.push_back(
-        evaluated(path, arguments.scale, arguments.sweep, [&] { bar(++done, steps); }));
+        evaluate_file(path, arguments.scale, arguments.sweep, [&] { bar(++done, steps); }));
     if (!arguments.sweep) bar(++done, steps);
   }
   return images;
 }
 
 int evaluate(const EvaluateArguments& arguments) {
-  const std::vector<analysis::EvaluatedImage> images = evaluated(arguments);
+  const std::vector<analysis::EvaluatedImage> images = evaluate_files(arguments);
   print(arguments.json ? analysis::evaluation_json(images) : analysis::evaluation_text(images));
   return 0;
 }

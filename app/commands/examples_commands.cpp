@@ -1,5 +1,5 @@
-// examples: copies the ready studies into a folder; demo: simulated participants through two of
-// them.
+// examples: copies the example studies into a folder; demo: runs two of them with simulated
+// participants.
 #include "app/commands/commands.hpp"
 #include "app/commands/shipped_files.hpp"
 #include "app/terminal/console.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The studies name no device, so they would be simulated on an ideal one.
+/// The studies name no device, so without this they would be simulated on an ideal one.
 constexpr const char* kDemoDevice = "touch";
 
 struct ExamplesArguments {
@@ -28,20 +28,21 @@ struct DemoArguments {
 };
 
 int write_examples(const ExamplesArguments& arguments) {
-  const fs::path& given = arguments.folder;
   // A shell command would parse "-x" as an option.
-  const fs::path folder = given.string().starts_with('-') ? "." / given : given;
+  const bool looks_like_option = arguments.folder.string().starts_with('-');
+  const fs::path folder = looks_like_option ? "." / arguments.folder : arguments.folder;
   copy_examples(folder);
   print(fmt::format(
-      "studies  {}\npictures {}\n\nGo there, and try one:\n\n  cd {}\n  touchtrial preview "
+      "studies  {}\npictures {}\n\nChange to the new folder, and try a study:\n\n  cd {}\n  "
+      "touchtrial preview "
       "config/classification.json\n  touchtrial prepare config/classification.json\n  touchtrial "
       "simulate config/classification.json --participants 20 --db rehearsal.db\n",
       (folder / "config").string(), (folder / "stimuli").string(), shell_word(folder.string())));
   return 0;
 }
 
-/// Prints a command as typed, and runs it.
-/// \throws what the command throws
+/// Prints a command line and runs it.
+/// \throws as run_command
 int show_and_run(const std::vector<std::string>& words) {
   std::string line = "\n$ touchtrial";
   for (const std::string& word : words) line += " " + shell_word(word);
@@ -76,11 +77,11 @@ int run_demo(const DemoArguments& arguments) {
 }  // namespace
 
 void add_examples_commands(CLI::App& program, Action& action) {
-  const auto [examples, copied] = add_command(
+  const auto [examples, example_arguments] = add_command(
       program, action, "examples",
-      "Copy the ready studies, with their pictures and subject files, into a new folder",
+      "Copy the example studies, with their pictures and subject files, into a new folder",
       write_examples);
-  examples.add_option("FOLDER", copied.folder, "New folder")->capture_default_str();
+  examples.add_option("FOLDER", example_arguments.folder, "New folder")->capture_default_str();
 
   const auto [demo, arguments] = add_command(
       program, action, "demo",

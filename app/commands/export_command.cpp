@@ -1,3 +1,4 @@
+// export: writes a study's data for other programs.
 #include "analysis/exports/bids/export_bids.hpp"
 #include "analysis/exports/export_people.hpp"
 #include "analysis/exports/export_psych_ds.hpp"
@@ -39,11 +40,11 @@ struct ExportArguments {
 };
 
 /// Refuses options that do not apply to the format.
-void require_fitting(const ExportArguments& arguments) {
+void require_applicable_options(const ExportArguments& arguments) {
   const analysis::DatasetOptions& dataset = arguments.dataset;
-  const bool for_bids =
+  const bool has_bids_options =
       dataset.traces || dataset.stimuli || arguments.with_database || !dataset.institution.empty();
-  if (for_bids && arguments.format != "bids") {
+  if (has_bids_options && arguments.format != "bids") {
     throw UsageError(
         "--traces, --with-stimuli, --with-database and --institution belong to --format bids");
   }
@@ -51,24 +52,25 @@ void require_fitting(const ExportArguments& arguments) {
   if (arguments.for_excel && (!is_csv || arguments.safety)) {
     throw UsageError("--for-excel belongs to --format csv");
   }
-  const bool for_datasets =
+  const bool has_dataset_options =
       !dataset.authors.empty() || !dataset.license.empty() || arguments.with_texts;
-  if (for_datasets && arguments.format != "bids" && arguments.format != "psych-ds") {
+  if (has_dataset_options && arguments.format != "bids" && arguments.format != "psych-ds") {
     throw UsageError(
         "--author, --license and --with-texts belong to --format bids and --format psych-ds");
   }
 }
 
 /// Refuses an export of a study that is not unblinded.
-/// \param what  reason why the export reveals stimuli or answers
+/// \param reason  reason why the export reveals stimuli or answers
 void require_outcomes(const record::StudyStore& store,
-                      const std::optional<analysis::Outcomes>& outcomes, const std::string& what) {
+                      const std::optional<analysis::Outcomes>& outcomes,
+                      const std::string& reason) {
   if (outcomes) return;
-  throw StoreError("the study is " + blind_words(store.state()) + ", and " + what +
+  throw StoreError("the study is " + blind_words(store.state()) + ", and " + reason +
                    "; run `touchtrial close` and `touchtrial unblind`");
 }
 
-/// Unreadable personal data do not prevent exporting the rest.
+/// The consents. If they cannot be read, prints a warning and returns none.
 std::vector<record::PersonalRecord> consents_if_readable(const fs::path& database) {
   try {
     return consents_beside(database);
@@ -106,7 +108,8 @@ std::vector<fs::path> write_files(const ExportArguments& arguments, const record
   const analysis::DatasetSource study{store, outcomes ? &*outcomes : nullptr,
                                       key ? &*key : nullptr};
   analysis::DatasetOptions options = arguments.dataset;
-  options.typed = arguments.with_texts ? analysis::Typed::shown : analysis::Typed::left_out;
+  options.free_text =
+      arguments.with_texts ? analysis::FreeText::shown : analysis::FreeText::left_out;
   options.consents = consents;
   if (format == "psych-ds") return analysis::export_psych_ds(study, options, arguments.folder);
   if (arguments.with_database) options.database = arguments.database;
@@ -114,9 +117,9 @@ std::vector<fs::path> write_files(const ExportArguments& arguments, const record
   return analysis::export_bids(study, options, arguments.folder);
 }
 
-/// Outcomes require the key, and a recorded look at this participant.
-std::vector<fs::path> export_one(const ExportArguments& arguments,
-                                 const record::StudyStore& store) {
+/// Exports outcomes only with the key, after `unblind --participant`.
+std::vector<fs::path> export_one_participant(const ExportArguments& arguments,
+                                             const record::StudyStore& store) {
   std::optional<study::StudyKey> key;
   std::optional<analysis::Outcomes> outcomes;
   if (!arguments.key.empty()) {
@@ -124,8 +127,8 @@ std::vector<fs::path> export_one(const ExportArguments& arguments,
     outcomes = outcomes_of(store, *key, arguments.participant);
   }
   std::vector<record::PersonalRecord> consents = consents_beside(arguments.database);
-  std::erase_if(consents, [&](const record::PersonalRecord& one) {
-    return one.participant != arguments.participant;
+  std::erase_if(consents, [&](const record::PersonalRecord& consent) {
+    return consent.participant != arguments.participant;
   });
   return analysis::export_participant(
       {store, outcomes ? &*outcomes : nullptr, key ? &*key : nullptr}, arguments.participant,
@@ -151,7 +154,7 @@ std::vector<fs::path> export_all(const ExportArguments& arguments,
 }
 
 int export_study(const ExportArguments& arguments) {
-  require_fitting(arguments);
+  require_applicable_options(arguments);
   const record::StudyStore store =
       record::StudyStore::open(arguments.database, record::StudyStore::Access::read_only);
   const analysis::HeadCheck heads = analysis::check_heads(store, arguments.database);
@@ -160,10 +163,10 @@ int export_study(const ExportArguments& arguments) {
   const std::vector<fs::path> files = arguments.safety ? export_safety_record(arguments, store)
                                       : arguments.participant.empty()
                                           ? export_all(arguments, store)
-                                          : export_one(arguments, store);
-  std::string written;
-  for (const fs::path& file : files) written += file.string() + "\n";
-  print(written);
+                                          : export_one_participant(arguments, store);
+  std::string paths;
+  for (const fs::path& file : files) paths += file.string() + "\n";
+  print(paths);
   return 0;
 }
 
@@ -188,7 +191,7 @@ void add_export_command(CLI::App& program, Action& action) {
   const auto [command, arguments] = add_command(
       program, action, "export", "Write a study's data for other programs", export_study);
   add_database_argument(command, arguments.database);
-  CLI::Option* format = command.add_option("--format", arguments.format, "What to write");
+  CLI::Option* format = command.add_option("--format", arguments.format, "Format of the export");
   format->check(CLI::IsMember({"csv", "json", "bids", "psych-ds", "r", "events"}))
       ->capture_default_str();
   command.add_option("-o,--out", arguments.folder, "Folder to write into")
@@ -201,9 +204,10 @@ void add_export_command(CLI::App& program, Action& action) {
       "Everything about one participant, as CSV; outcomes only with --key, after `unblind "
       "--participant`");
   command
-      .add_flag("--safety", arguments.safety,
-                "Stops, faults, largest forces, reasons and deviations of everybody, as CSV, "
-                "without outcomes; with --key also typed text")
+      .add_flag(
+          "--safety", arguments.safety,
+          "Stops, faults, largest forces, reasons and deviations of all participants, as CSV, "
+          "without outcomes; with --key also typed text")
       ->excludes(participant)
       ->excludes(format);
   participant->excludes(format);

@@ -1,6 +1,6 @@
-// extract: the texture of one image, optionally with every stage.
+// extract: computes the texture of one image, and optionally writes every stage.
 #include "app/commands/commands.hpp"
-#include "app/commands/given_pictures.hpp"
+#include "app/commands/input_pictures.hpp"
 #include "app/commands/method_arguments.hpp"
 #include "app/terminal/console.hpp"
 #include "core/errors.hpp"
@@ -41,14 +41,14 @@ struct ExtractArguments {
   fs::path dump;
 };
 
-/// Writes a plane and frees it: the planes of a large picture fill most of the memory.
+/// Writes a plane and frees it, because the planes of a large picture fill most of the memory.
 template <typename Real>
 void dump_if_computed(const fs::path& folder, const std::string& name, Plane<Real>& plane) {
   if (!plane.empty()) write_npy(folder / (name + ".npy"), plane);
   plane = {};
 }
 
-/// (H, W, 2): the force's x, then y, at each pixel.
+/// Writes an array (H, W, 2): the force's x, then y, at each pixel.
 template <typename Real>
 void dump_force(const fs::path& folder, const engine::ForceField<Real>& force) {
   std::vector<Real> interleaved;
@@ -61,16 +61,16 @@ void dump_force(const fs::path& folder, const engine::ForceField<Real>& force) {
                   {force.x.height(), force.x.width(), 2});
 }
 
-/// Checks the paths of all planes that a method may produce, before the work.
+/// Checks the paths of all planes that a method may produce, before the extraction starts.
 void require_dump_places(const fs::path& folder) {
   for (const char* name :
        {"image", "subband_LL", "subband_LH", "subband_HL", "subband_HH", "csgv", "order",
         "enhanced", "cartoon", "texture", "texture_u8", "force_tangential"}) {
-    require_output_place(folder / (std::string(name) + ".npy"));
+    require_output_path(folder / (std::string(name) + ".npy"));
   }
 }
 
-/// Writes all planes, and frees those except texture, picture and force.
+/// Writes all planes, and frees all except texture, picture and force.
 template <typename Real>
 void dump_all(const fs::path& folder, GreyImage& image, engine::Extraction<Real>& extraction) {
   make_folder(folder);
@@ -95,7 +95,7 @@ std::string draw_arrows(const fs::path& path, const engine::Extraction<Real>& ex
       path, extraction.picture,
       {converted<double>(extraction.force.x), converted<double>(extraction.force.y)});
   return fmt::format(
-      "{}: {} x {} px from ({}, {}); an arrow of one pixel's length is {:.3g} grey levels per "
+      "{}: {} x {} px from ({}, {}); an arrow one pixel long stands for {:.3g} grey levels per "
       "pixel\n",
       path.string(), patch.width, patch.height, patch.x, patch.y, patch.force_of_unit_arrow);
 }
@@ -119,29 +119,30 @@ std::string summary(const ExtractArguments& arguments, const engine::Extraction<
 
 /// \throws FileError with the image's name if it is too small for an option, for instance "auto"
 template <typename Real>
-engine::Extraction<Real> extracted(const fs::path& path, const GreyImage& image,
-                                   const engine::ExtractionOptions& options,
-                                   const engine::WantedPlanes& wanted) {
+engine::Extraction<Real> run_extraction(const fs::path& path, const GreyImage& image,
+                                        const engine::ExtractionOptions& options,
+                                        const engine::RequestedPlanes& requested) {
   try {
-    return engine::extract_texture<Real>(image, options, wanted);
+    return engine::extract_texture<Real>(image, options, requested);
   } catch (const std::invalid_argument& error) {
     throw FileError(one_line(path.string()) + ": " + error.what() +
                     "; list them, or give a larger image");
   }
 }
 
-engine::WantedPlanes wanted_planes(const ExtractArguments& arguments) {
-  engine::WantedPlanes wanted =
-      arguments.dump.empty() ? engine::WantedPlanes{} : engine::WantedPlanes::all();
-  wanted.picture = arguments.mapping == engine::kMappingNames.front().name;
-  wanted.force = arguments.neighbourhood == kForceNeighbourhood &&
-                 (!arguments.dump.empty() || !arguments.arrows.empty());
-  return wanted;
+engine::RequestedPlanes requested_planes(const ExtractArguments& arguments) {
+  engine::RequestedPlanes requested =
+      arguments.dump.empty() ? engine::RequestedPlanes{} : engine::RequestedPlanes::all();
+  requested.picture = arguments.mapping == engine::kMappingNames.front().name;
+  requested.force = arguments.neighbourhood == kForceNeighbourhood &&
+                    (!arguments.dump.empty() || !arguments.arrows.empty());
+  return requested;
 }
 
-/// Adds what the engine does not compute with a texture: other mappings and neighbourhoods.
+/// Computes the picture and the force for mappings and neighbourhoods that the engine does not
+/// provide together with a texture.
 template <typename Real>
-void complete(const ExtractArguments& arguments, engine::Extraction<Real>& extraction) {
+void compute_missing(const ExtractArguments& arguments, engine::Extraction<Real>& extraction) {
   if (extraction.picture.empty()) {
     extraction.picture = engine::texture_picture(
         extraction.texture, *value_in(engine::kMappingNames, arguments.mapping));
@@ -154,14 +155,14 @@ void complete(const ExtractArguments& arguments, engine::Extraction<Real>& extra
 
 template <typename Real>
 int extract_with(const ExtractArguments& arguments, const engine::ExtractionOptions& options) {
-  GreyImage image = read_given_picture(arguments.image, arguments.scale);
+  GreyImage image = read_input_picture(arguments.image, arguments.scale);
   engine::Extraction<Real> extraction =
-      extracted<Real>(arguments.image, image, options, wanted_planes(arguments));
+      run_extraction<Real>(arguments.image, image, options, requested_planes(arguments));
   if (!extraction.converged) {
     spdlog::warn("{}: tv-gabor stopped after {} steps with a relative gap of {:.2g}",
                  arguments.image.string(), extraction.steps, extraction.gap);
   }
-  complete(arguments, extraction);
+  compute_missing(arguments, extraction);
   if (!arguments.output.empty()) engine::write_png(arguments.output, extraction.picture);
   if (!arguments.dump.empty()) dump_all(arguments.dump, image, extraction);
   std::string text = summary(arguments, extraction);
@@ -182,7 +183,7 @@ void check_output(const fs::path& image, const fs::path& output, const std::stri
     throw UsageError("extract: " + output.string() +
                      ": pictures are written as PNG; give a name that ends in .png");
   }
-  require_output_place(output);
+  require_output_path(output);
 }
 
 int extract(const ExtractArguments& arguments) {
@@ -192,7 +193,7 @@ int extract(const ExtractArguments& arguments) {
   const engine::ExtractionOptions options = extraction_options(arguments.method);
   if (!arguments.arrows.empty() &&
       arguments.arrows.lexically_normal() == arguments.output.lexically_normal()) {
-    throw UsageError("extract: --output and --arrows name one file; give two");
+    throw UsageError("extract: --output and --arrows name the same file; give two names");
   }
   if (arguments.neighbourhood % 2 == 0) {
     throw UsageError("extract: --neighbourhood is a side length and must be odd, 3 or more");

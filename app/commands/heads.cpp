@@ -23,81 +23,85 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The losses, each session and the file's chain once, by the most complete head file.
+/// The losses according to the most complete head file, at most one per session and one for the
+/// file's chain.
 std::vector<record::Loss> losses_of(const record::StudyStore& store,
                                     std::vector<record::HeadReading> readings) {
   std::ranges::stable_sort(
       readings, std::ranges::greater{}, [](const record::HeadReading& reading) {
         return std::pair(reading.record.file.length, reading.record.acknowledged);
       });
-  std::vector<record::Loss> found;
-  std::set<int> named;
+  std::vector<record::Loss> new_losses;
+  std::set<int> reported_sessions;
   for (const record::HeadReading& reading : readings) {
     if (!reading.damage.empty()) {
       spdlog::warn("{}: {}", one_line(reading.file.string()), reading.damage);
     }
     std::vector<record::Loss> losses = record::losses(reading.record, store);
-    std::erase_if(losses, [&](const record::Loss& loss) { return named.contains(loss.session); });
+    std::erase_if(
+        losses, [&](const record::Loss& loss) { return reported_sessions.contains(loss.session); });
     for (record::Loss& loss : losses) {
-      if (found.empty())
-        loss.what = "as " + one_line(reading.file.string()) + " knows it, " + loss.what;
-      named.insert(loss.session);
-      found.push_back(std::move(loss));
+      if (new_losses.empty())
+        loss.what = "according to " + one_line(reading.file.string()) + ", " + loss.what;
+      reported_sessions.insert(loss.session);
+      new_losses.push_back(std::move(loss));
     }
   }
-  return found;
+  return new_losses;
 }
 
-/// The head files to compare a database with: those on record, and the one in a newly named folder.
-std::vector<record::KnownHead> heads_of(const record::StudyStore& store, const fs::path& database,
-                                        const HeadOptions& options) {
-  std::vector<record::KnownHead> heads = record::known_heads(store, database);
+/// The head files to compare a database with: the recorded ones, and the one in a newly named
+/// folder.
+std::vector<record::ExpectedHead> heads_of(const record::StudyStore& store,
+                                           const fs::path& database, const HeadOptions& options) {
+  std::vector<record::ExpectedHead> heads = record::expected_heads(store, database);
   if (!options.folder || options.folder->empty()) return heads;
-  const fs::path named =
+  const fs::path new_head =
       fs::weakly_canonical(*options.folder) / record::head_path_for(database).filename();
-  if (std::ranges::count(heads, named, &record::KnownHead::file) > 0) return heads;
-  auto reading = record::HeadFile(named).reading(record::head_signers(store.commitment()));
-  if (reading) heads.push_back({named, std::move(reading)});
+  if (std::ranges::count(heads, new_head, &record::ExpectedHead::file) > 0) return heads;
+  auto reading = record::HeadFile(new_head).reading(record::head_signers(store.commitment()));
+  if (reading) heads.push_back({new_head, std::move(reading)});
   return heads;
 }
 
-std::vector<record::HeadReading> readings_of(const std::vector<record::KnownHead>& heads) {
+std::vector<record::HeadReading> readings_of(const std::vector<record::ExpectedHead>& heads) {
   std::vector<record::HeadReading> readings;
-  for (const record::KnownHead& head : heads) {
+  for (const record::ExpectedHead& head : heads) {
     if (head.reading) readings.push_back(*head.reading);
   }
   return readings;
 }
 
-/// Adds missing head files. The one beside the database is recreated from another one whose folder
-/// is named.
-void add_gone(std::vector<record::Loss>& missing, const std::vector<record::KnownHead>& heads,
-              const fs::path& own, const HeadOptions& options) {
+/// Adds missing head files to the losses. The one beside the database is not missing if another one
+/// can restore it.
+void add_missing_heads(std::vector<record::Loss>& losses,
+                       const std::vector<record::ExpectedHead>& heads, const fs::path& main_head,
+                       const HeadOptions& options) {
   const bool is_restored = options.folder && !readings_of(heads).empty();
-  for (const record::KnownHead& head : heads) {
-    if (head.reading || (head.file == own && is_restored)) continue;
+  for (const record::ExpectedHead& head : heads) {
+    if (head.reading || (head.file == main_head && is_restored)) continue;
     const std::string name = one_line(head.file.string());
-    missing.push_back(
+    losses.push_back(
         {.session = 0,
-         .what = head.file == own
+         .what = head.file == main_head
                      ? "its head file " + name +
-                           " is gone, so further losses cannot be detected (if there is a "
+                           " is missing, so further losses cannot be detected (if there is a "
                            "second head file, name its folder with run --heads)"
                      : "its second head file " + name +
-                           " is gone, so it is unknown whether the first is the newest (restore "
-                           "it, or connect its disk)"});
+                           " is missing, so it is unknown whether the first is up to date "
+                           "(restore it, or connect its disk)"});
   }
 }
 
-/// Records which head files there are. A head file that is no longer used is updated too, so that
-/// it reveals an older copy of the database.
-void record_heads(record::StudyStore& store, const std::vector<record::KnownHead>& before,
+/// Records the paths of the head files. A head file that is no longer used is updated a last time,
+/// so that it reveals an older copy of the database.
+void record_heads(record::StudyStore& store, const std::vector<record::ExpectedHead>& previous,
                   const record::HeadFiles& files, const Signer& signer) {
   if (store.heads_on_record() == files.also()) return;
   store.record_heads(files.also(), utc_now());
-  const std::vector<fs::path> now = files.paths();
-  for (const record::KnownHead& head : before) {
-    if (!head.reading || std::ranges::count(now, head.file) > 0) continue;
+  const std::vector<fs::path> current_paths = files.paths();
+  for (const record::ExpectedHead& head : previous) {
+    if (!head.reading || std::ranges::count(current_paths, head.file) > 0) continue;
     if (head.reading->record.database != record::record_of(store).database) continue;
     try {
       record::HeadFile(head.file).update(
@@ -113,38 +117,39 @@ void record_heads(record::StudyStore& store, const std::vector<record::KnownHead
   }
 }
 
-std::string words_on(const std::vector<record::Loss>& losses) {
+std::string descriptions_of(const std::vector<record::Loss>& losses) {
   return listed(losses, "; ", &record::Loss::what);
 }
 
-void accept(record::StudyStore& store, const std::vector<record::Loss>& losses,
-            const std::string& reason) {
+void record_loss(record::StudyStore& store, const std::vector<record::Loss>& losses,
+                 const std::string& reason) {
   std::map<int, std::string> sessions;
   std::int64_t answers = 0;
   for (const record::Loss& loss : losses) {
     if (loss.session > 0 && store.last_event(loss.session)) sessions[loss.session] = loss.what;
     answers = std::max(answers, loss.answers);
   }
-  store.accept_loss({.reason = reason, .missing = words_on(losses), .answers = answers}, sessions,
-                    utc_now());
+  store.accept_loss({.reason = reason, .missing = descriptions_of(losses), .answers = answers},
+                    sessions, utc_now());
 }
 
-void warn_of_no_loss() {
+void warn_of_needless_reason() {
   spdlog::warn("--accept-loss: no head file shows a loss, and none was recorded");
 }
 
-bool is_on_disk_of(const fs::path& file, const fs::path& database) {
-  struct stat one {};
-  struct stat other {};
-  return ::stat(file.parent_path().c_str(), &one) == 0 && ::stat(database.c_str(), &other) == 0 &&
-         one.st_dev == other.st_dev;
+bool is_on_same_disk(const fs::path& file, const fs::path& database) {
+  struct stat folder {};
+  struct stat data {};
+  return ::stat(file.parent_path().c_str(), &folder) == 0 && ::stat(database.c_str(), &data) == 0 &&
+         folder.st_dev == data.st_dev;
 }
 
 void warn_if_on_one_disk(const record::HeadFiles& files, const record::StudyStore& store,
                          const fs::path& database) {
   const std::vector<fs::path> paths = files.paths();
-  const bool is_alone = paths.size() < 2 || is_on_disk_of(fs::absolute(paths.back()), database);
-  if (!is_alone || store.commitment().simulated) return;
+  const bool is_on_one_disk =
+      paths.size() < 2 || is_on_same_disk(fs::absolute(paths.back()), database);
+  if (!is_on_one_disk || store.commitment().simulated) return;
   spdlog::warn(
       "{}: the head of the study is stored only on the database's disk, and would be lost with it; "
       "name a folder on another disk with --heads",
@@ -161,7 +166,7 @@ void refuse_lost_database(const std::filesystem::path& database,
   if (readings.empty()) return;
   throw StoreError(fmt::format(
       "{}: is missing, but its head file {} records it, with {} acknowledged; restore the database "
-      "and its -wal from a complete copy, or begin a new one with --accept-loss REASON, which "
+      "and its -wal from a complete copy, or start a new one with --accept-loss REASON, which "
       "is recorded",
       one_line(database.string()), one_line(readings.front().file.string()),
       counted(readings.front().record.acknowledged, "answer")));
@@ -169,33 +174,33 @@ void refuse_lost_database(const std::filesystem::path& database,
 
 void set_head_writer(record::StudyStore& store, const fs::path& database, const Signer& signer,
                      const HeadOptions& options, HeadUse use) {
-  const fs::path own = record::head_path_for(database);
-  std::vector<record::KnownHead> known = heads_of(store, database, options);
-  const std::vector<record::HeadReading> readings = readings_of(known);
-  if (use == HeadUse::if_there && readings.empty()) {
-    if (!options.accept_loss.empty()) warn_of_no_loss();
+  const fs::path main_head = record::head_path_for(database);
+  std::vector<record::ExpectedHead> heads = heads_of(store, database, options);
+  const std::vector<record::HeadReading> readings = readings_of(heads);
+  if (use == HeadUse::if_present && readings.empty()) {
+    if (!options.accept_loss.empty()) warn_of_needless_reason();
     if (!store.commitment().simulated && store.stations() == 0) {
       spdlog::warn("{}: has no head file beside it, so losses cannot be detected",
                    one_line(database.string()));
     }
     return;
   }
-  if (known.empty() && !store.sessions().empty()) known.push_back({own, std::nullopt});
-  std::vector<record::Loss> missing = losses_of(store, readings);
-  add_gone(missing, known, own, options);
-  if (!missing.empty() && options.accept_loss.empty()) {
+  if (heads.empty() && !store.sessions().empty()) heads.push_back({main_head, std::nullopt});
+  std::vector<record::Loss> losses = losses_of(store, readings);
+  add_missing_heads(losses, heads, main_head, options);
+  if (!losses.empty() && options.accept_loss.empty()) {
     throw StoreError(one_line(database.string()) +
-                     ": lacks events that its head file records: " + words_on(missing) +
+                     ": lacks events that its head file records: " + descriptions_of(losses) +
                      "; restore the database and its -wal from a complete copy, or continue with "
                      "--accept-loss REASON, which is recorded [lost-events]");
   }
-  if (missing.empty() && !options.accept_loss.empty()) warn_of_no_loss();
-  std::string also = store.heads_on_record().value_or("");
-  if (also.empty() && !readings.empty()) also = readings.front().record.also;
+  if (losses.empty() && !options.accept_loss.empty()) warn_of_needless_reason();
+  std::string second_folder = store.heads_on_record().value_or("");
+  if (second_folder.empty() && !readings.empty()) second_folder = readings.front().record.also;
   const record::HeadFiles files(database, record::head_signers(store.commitment()),
-                                options.folder.value_or(also));
-  if (!missing.empty()) {
-    accept(store, missing, options.accept_loss);
+                                options.folder.value_or(second_folder));
+  if (!losses.empty()) {
+    record_loss(store, losses, options.accept_loss);
     files.update(signer, [&](record::HeadRecord& record) {
       const std::int64_t count = record.count;
       record = record::record_of(store);
@@ -205,38 +210,38 @@ void set_head_writer(record::StudyStore& store, const fs::path& database, const 
   if (use == HeadUse::required) warn_if_on_one_disk(files, store, database);
   store.set_head_writer(
       [files, signer](const record::HeadChange& change) { files.update(signer, change); });
-  if (use == HeadUse::required) record_heads(store, known, files, signer);
+  if (use == HeadUse::required) record_heads(store, heads, files, signer);
 }
 
-void require_head_beside(const fs::path& database) {
+void check_against_heads(const fs::path& database) {
   const record::StudyStore store =
       record::StudyStore::open(database, record::StudyStore::Access::read_only);
-  const std::vector<record::KnownHead> known = record::known_heads(store, database);
-  if (!known.empty() && !known.front().reading) {
-    spdlog::warn("{}: its head file is not beside it, and was not compared",
+  const std::vector<record::ExpectedHead> heads = record::expected_heads(store, database);
+  if (!heads.empty() && !heads.front().reading) {
+    spdlog::warn("{}: its head file is missing, so the database was not compared with it",
                  one_line(database.string()));
   }
-  const std::vector<record::Loss> missing = losses_of(store, readings_of(known));
-  if (missing.empty()) return;
+  const std::vector<record::Loss> losses = losses_of(store, readings_of(heads));
+  if (losses.empty()) return;
   throw VerificationError(
       one_line(database.string()) +
-      ": lacks events that its head file records: " + words_on(missing) +
-      "; take the database and its -wal from a complete copy, or record the loss at its "
+      ": lacks events that its head file records: " + descriptions_of(losses) +
+      "; restore the database and its -wal from a complete copy, or record the loss at its "
       "station, for instance with `touchtrial note --accept-loss REASON`");
 }
 
 void make_head(const record::StudyStore& store, const fs::path& database, const Signer& signer) {
-  const fs::path own = record::head_path_for(database);
+  const fs::path main_head = record::head_path_for(database);
   std::error_code ignored;
-  fs::remove(own, ignored);  // left over from a database that is gone
-  record::HeadFile(own).update(
+  fs::remove(main_head, ignored);  // left over from a removed database
+  record::HeadFile(main_head).update(
       signer, [&](record::HeadRecord& record) { record = record::record_of(store); });
 }
 
 std::string head_words(const record::StudyStore& store) {
-  const record::HeadRecord now = record::record_of(store);
-  return fmt::format("head {}, {} acknowledged", record::head_digits(now),
-                     counted(now.acknowledged, "answer"));
+  const record::HeadRecord head = record::record_of(store);
+  return fmt::format("head {}, {} acknowledged", record::head_digits(head),
+                     counted(head.acknowledged, "answer"));
 }
 
 }  // namespace touchtrial::app

@@ -12,17 +12,17 @@
 namespace touchtrial::app {
 
 struct HeadOptions {
-  /// Folder of the second head file from now on; nothing: the previous one. Head files on record
-  /// are always read.
+  /// Folder of the second head file from now on; if not set, the previous folder. Recorded head
+  /// files are always read.
   std::optional<std::filesystem::path> folder{};
-  std::string accept_loss{};  ///< why the loss is accepted; empty: it is not
+  std::string accept_loss{};  ///< the reason to accept a loss; empty: refuse it
 };
 
-/// Whether a database must have a head file: at sessions it gets one.
-enum class HeadUse { required, if_there };
+/// Whether a database must have a head file; sessions require one and create it.
+enum class HeadUse { required, if_present };
 
-/// Refuses to create a database if a head file shows that there was one before, unless the options
-/// accept the loss.
+/// Refuses to create a database if a head file records an earlier one, unless the options accept
+/// the loss.
 /// \throws StoreError, naming the head file and the remedy
 /// \throws FileError if a head file or its folder cannot be used
 void refuse_lost_database(const std::filesystem::path& database,
@@ -33,18 +33,18 @@ void refuse_lost_database(const std::filesystem::path& database,
 /// too.
 /// \pre store.sign_with(signer)
 /// \throws StoreError, naming what is missing and the remedy, if the database lacks something that
-///   a head file records, a head file on record is missing, or it has sessions but no head file
+///   a head file records, a recorded head file is missing, or it has sessions but no head file
 ///   where one is required
 /// \throws FileError if a head file or its folder cannot be used
 void set_head_writer(record::StudyStore& store, const std::filesystem::path& database,
                      const Signer& signer, const HeadOptions& options, HeadUse use);
 
-/// Compares a database that is only read with the accessible head files.
+/// Compares a database that will only be read with the accessible head files.
 /// \throws VerificationError, naming what the database lacks and the remedy
 /// \throws FileError if the head file cannot be read
-void require_head_beside(const std::filesystem::path& database);
+void check_against_heads(const std::filesystem::path& database);
 
-/// Creates the head file of a database that was filled at once, as by simulations.
+/// Creates the head file of a database that was filled in one step, for instance by a simulation.
 void make_head(const record::StudyStore& store, const std::filesystem::path& database,
                const Signer& signer);
 

@@ -43,7 +43,7 @@ std::string beginning_of(const fs::path& file) {
   return {bytes.data(), static_cast<std::size_t>(stream.gcount())};
 }
 
-/// A study file is neither protected nor named as a key.
+/// Whether a file is a key, by its extension or its content.
 bool is_key(const fs::path& file) {
   return ending_of(file) == ".key" || beginning_of(file).starts_with("touchtrial-protected") ||
          beginning_of(file).starts_with("{\n  \"check\": ");
@@ -61,13 +61,13 @@ struct CheckedStudy {
   study::PackPlace place;  ///< stations' files are searched beside it
   fs::path key_path;
   study::StudyKey key;
-  fs::path pictures;  ///< the study file's folder; empty: that of a station's file
+  fs::path pictures_folder;  ///< the study file's folder; empty: the one in a station's file
 };
 
-CheckedStudy checked_study(const KeyCheckArguments& arguments) {
+CheckedStudy load_checked_study(const KeyCheckArguments& arguments) {
   if (is_key(arguments.subject)) {
     if (!arguments.key.empty()) {
-      throw UsageError("key check: a key is named twice; give the study file, or omit --key");
+      throw UsageError("key check: two keys are given; give the study file, or omit --key");
     }
     study::StudyKey key = study::load_study_key(arguments.subject);
     const fs::path pack = arguments.pack.empty() ? key.pack_folder : arguments.pack;
@@ -76,9 +76,9 @@ CheckedStudy checked_study(const KeyCheckArguments& arguments) {
   const study::Study study = study::load_study(arguments.subject);
   const study::PackPlace place = pack_place_for(arguments.subject, arguments.pack);
   const fs::path key_path = arguments.key.empty() ? place.key : arguments.key;
-  if (!is_there(key_path)) {
+  if (!path_exists(key_path)) {
     throw FileError(one_line(key_path.string()) +
-                    ": there is no key; name it with --key, or run `touchtrial prepare` first");
+                    ": does not exist; name the key with --key, or run `touchtrial prepare` first");
   }
   study::StudyKey key = study::load_study_key(key_path);
   if (!study::are_same(key.study, study)) {
@@ -88,81 +88,83 @@ CheckedStudy checked_study(const KeyCheckArguments& arguments) {
 }
 
 /// The pack, chosen as by `run`.
-/// \param named  by --pack; may be empty
+/// \param pack_option  the value of --pack; may be empty
 fs::path pack_of(const CheckedStudy& study, const study::StationKey& station,
-                 const fs::path& named) {
-  return named.empty() && is_there(station.pack_folder) ? station.pack_folder : study.place.pack;
+                 const fs::path& pack_option) {
+  return pack_option.empty() && path_exists(station.pack_folder) ? station.pack_folder
+                                                                 : study.place.pack;
 }
 
-/// Refuses a protected file of another station, or study, before its passphrase is asked for.
-/// \param name  of the station whose file it should be; empty: any of the key's
-void require_clear_part(const study::StudyKey& key, const std::string& name, const fs::path& file) {
-  const std::optional<PublicKey> signer = study::signer_in_clear(file);
+/// Refuses a protected file of another station or study before asking for its passphrase.
+/// \param name  the expected station; empty: any station of the key
+void refuse_foreign_station_file(const study::StudyKey& key, const std::string& name,
+                                 const fs::path& file) {
+  const std::optional<PublicKey> signer = study::unencrypted_signer(file);
   if (!signer) return;
-  const auto own = std::ranges::find_if(key.stations, [&](const study::Station& station) {
-    return study::station_key(key, station.name).signer().public_half() == *signer;
+  const auto station = std::ranges::find_if(key.stations, [&](const study::Station& candidate) {
+    return study::station_key(key, candidate.name).signer().public_half() == *signer;
   });
-  if (own == key.stations.end()) {
+  if (station == key.stations.end()) {
     throw VerificationError(
-        "is another study's, or of a station that the key does not know; give the station the "
-        "file that was made with this key");
+        "belongs to another study, or to a station that the key does not contain; give the station "
+        "the file that was made with this key");
   }
-  if (!name.empty() && own->name != name) {
-    throw VerificationError("is the file of station " + own->name);
+  if (!name.empty() && station->name != name) {
+    throw VerificationError("is the file of station " + station->name);
   }
 }
 
-StationFinding station_finding(const CheckedStudy& study, const std::string& name,
-                               const fs::path& file, const fs::path& pack) {
+StationFinding check_station(const CheckedStudy& study, const std::string& name,
+                             const fs::path& file, const fs::path& pack) {
   StationFinding finding{name, file, ""};
   try {
-    require_clear_part(study.key, name, file);
+    refuse_foreign_station_file(study.key, name, file);
     study::StationKey station = study::load_station_key(file);
-    if (!study.pictures.empty()) station.study.folder = study.pictures;
+    if (!study.pictures_folder.empty()) station.study.folder = study.pictures_folder;
     if (!name.empty() && station.station.name != name) {
       throw VerificationError("is the file of station " + station.station.name);
     }
     finding.name = station.station.name;
-    session::require_opens(study.key, station, engine::Pack(pack_of(study, station, pack)));
+    session::require_decryptable(study.key, station, engine::Pack(pack_of(study, station, pack)));
   } catch (const Error& error) {
     finding.fault = error.what();
   }
   return finding;
 }
 
-std::vector<StationFinding> station_findings(const KeyCheckArguments& arguments,
-                                             const CheckedStudy& study) {
+std::vector<StationFinding> check_stations(const KeyCheckArguments& arguments,
+                                           const CheckedStudy& study) {
   if (!arguments.station_file.empty()) {
-    return {station_finding(study, arguments.station, arguments.station_file, arguments.pack)};
+    return {check_station(study, arguments.station, arguments.station_file, arguments.pack)};
   }
   std::vector<StationFinding> findings;
   for (const study::Station& station : study.key.stations) {
     if (!arguments.station.empty() && station.name != arguments.station) continue;
     const fs::path file = study.place.station(station.name);
-    if (is_there(file) || !arguments.station.empty()) {
-      findings.push_back(station_finding(study, station.name, file, arguments.pack));
+    if (path_exists(file) || !arguments.station.empty()) {
+      findings.push_back(check_station(study, station.name, file, arguments.pack));
     }
   }
   if (findings.empty()) {
     throw UsageError(
         one_line(study.place.station(arguments.station).string()) +
-        ": there is no station's file of this study here; name the study file in place of the key, "
-        "and the key with --key, or name a file with --station-file");
+        ": no station file of this study exists here; give the study file, and the key with "
+        "--key, or name a file with --station-file");
   }
   return findings;
 }
 
 /// Whether `run` would find the key.
 bool is_beside_study(const CheckedStudy& study) {
-  const fs::path beside = study::pack_place_at(study.place.pack).key;
+  const fs::path key_beside_pack = study::pack_place_at(study.place.pack).key;
   std::error_code error;
-  return fs::equivalent(beside, study.key_path, error);
+  return fs::equivalent(key_beside_pack, study.key_path, error);
 }
 
 int check_key(const KeyCheckArguments& arguments) {
-  const CheckedStudy study = checked_study(arguments);
-  const std::vector<StationFinding> findings = station_findings(arguments, study);
-  const bool beside = is_beside_study(study);
+  const CheckedStudy study = load_checked_study(arguments);
+  const std::vector<StationFinding> findings = check_stations(arguments, study);
+  const bool is_beside = is_beside_study(study);
   const bool is_protected = study::is_protected(study.key_path);
   if (arguments.json) {
     nlohmann::ordered_json stations = nlohmann::ordered_json::array();
@@ -175,7 +177,7 @@ int check_key(const KeyCheckArguments& arguments) {
     print(json_text(nlohmann::ordered_json{{"study", study.key.study.name},
                                            {"key", study.key_path.string()},
                                            {"protected", is_protected},
-                                           {"beside_study", beside},
+                                           {"beside_study", is_beside},
                                            {"stations", stations}}));
   } else {
     std::string text = fmt::format("key {} ({}protected by a passphrase)\n",
@@ -183,14 +185,14 @@ int check_key(const KeyCheckArguments& arguments) {
     for (const StationFinding& finding : findings) {
       text += fmt::format("station {}: {}: {}\n", finding.name, finding.file.string(),
                           finding.fault.empty() ? "a test record opens with the key"
-                                                : "DOES NOT HOLD: " + one_line(finding.fault));
+                                                : "FAILED: " + one_line(finding.fault));
     }
     print(text);
   }
-  if (beside) {
+  if (is_beside) {
     spdlog::warn(
-        "{}: the investigator's key lies beside the study; if people are run here, each session "
-        "records that as a deviation: move the key to another medium before the first participant",
+        "{}: the investigator's key is beside the study, which each session with a person records "
+        "as a deviation; move the key to another medium before the first participant",
         study.key_path.string());
   }
   return std::ranges::all_of(findings, &std::string::empty, &StationFinding::fault) ? 0

@@ -1,4 +1,4 @@
-// key: copy and protect. "key check" has its own file.
+// key: adds "key copy" and "key protect". "key check" has its own file.
 #include "app/commands/commands.hpp"
 #include "app/terminal/console.hpp"
 #include "app/terminal/passphrases.hpp"
@@ -19,37 +19,37 @@ namespace fs = std::filesystem;
 struct KeyArguments {
   fs::path file;  ///< a key, with "protect" also a station's file
   fs::path output;
-  std::vector<fs::path> new_passphrase_files;  ///< one at most
+  std::vector<fs::path> new_passphrase_files;  ///< at most one
   bool passphrase = false;
   bool remove = false;
 };
 
 void refuse_existing_secret(const fs::path& output) {
   refuse_link(output);
-  if (!is_there(output)) return;
+  if (!path_exists(output)) return;
   throw UsageError(one_line(output.string()) + ": exists already; give another name with --out");
 }
 
-bool wants_passphrase(const KeyArguments& arguments) {
+bool has_new_passphrase(const KeyArguments& arguments) {
   return arguments.passphrase || !arguments.new_passphrase_files.empty();
 }
 
 int copy_key(const KeyArguments& arguments) {
   refuse_existing_secret(arguments.output);
-  if (!wants_passphrase(arguments) && study::is_protected(arguments.file)) {
+  if (!has_new_passphrase(arguments) && study::is_protected(arguments.file)) {
     throw UsageError(one_line(arguments.file.string()) +
-                     ": is protected by a passphrase, and the copy would not be; give the copy one "
-                     "of its own with --passphrase");
+                     ": is protected by a passphrase, and the copy would not be; protect the copy "
+                     "too with --passphrase");
   }
   const study::StudyKey key = study::load_study_key(arguments.file);
-  if (wants_passphrase(arguments)) {
+  if (has_new_passphrase(arguments)) {
     study::save_study_key(arguments.output, key,
                           new_passphrase(arguments.output, arguments.new_passphrase_files));
   } else {
     study::save_study_key(arguments.output, key);
   }
   print("key " + arguments.output.string() +
-        " (it opens every session, as the first one does; neither can be taken back)\n");
+        " (like the original, it opens every session and cannot be revoked)\n");
   return 0;
 }
 
@@ -59,7 +59,7 @@ int protect_key(const KeyArguments& arguments) {
     print(arguments.file.string() + ": is no longer protected by a passphrase\n");
     return 0;
   }
-  // Asks for the old passphrase first, so that no new one is asked for if the file does not open.
+  // Opens the file first, so that a wrong old passphrase is refused before a new one is chosen.
   static_cast<void>(study::read_secret_text(arguments.file));
   study::protect(arguments.file, new_passphrase(arguments.file, arguments.new_passphrase_files));
   print(arguments.file.string() + ": is protected; it cannot be opened without the passphrase\n");
@@ -69,29 +69,29 @@ int protect_key(const KeyArguments& arguments) {
 CLI::Option* add_new_passphrase_option(CLI::App& command, KeyArguments& arguments) {
   return command
       .add_option("--new-passphrase-file", arguments.new_passphrase_files,
-                  "File or descriptor whose first line is the new passphrase (default: asked for)")
+                  "File or descriptor whose first line is the new passphrase (default: prompt)")
       ->type_name("FILE")
       ->expected(1);
 }
 
-void add_copy(CLI::App& keys, Action& action) {
+void add_copy_command(CLI::App& keys, Action& action) {
   const auto [command, arguments] = add_command(
       keys, action, "copy",
       "Copy a key, for a colleague or another medium, with its own passphrase", copy_key);
   command.add_option("KEY", arguments.file, "The investigator's key")->required();
   command.add_option("-o,--out", arguments.output, "Key to write")->required();
-  command.add_flag("--passphrase", arguments.passphrase, "Protect the copy by a new passphrase");
+  command.add_flag("--passphrase", arguments.passphrase, "Protect the copy with a new passphrase");
   add_new_passphrase_option(command, arguments);
   add_passphrase_option(command);
 }
 
-void add_protect(CLI::App& keys, Action& action) {
+void add_protect_command(CLI::App& keys, Action& action) {
   const auto [command, arguments] =
       add_command(keys, action, "protect",
                   "Set, change or remove the passphrase of a key or a station's file", protect_key);
   command.add_option("FILE", arguments.file, "Key or station's file")->required();
-  CLI::Option* given = add_new_passphrase_option(command, arguments);
-  command.add_flag("--remove", arguments.remove, "Remove the passphrase")->excludes(given);
+  CLI::Option* new_passphrase = add_new_passphrase_option(command, arguments);
+  command.add_flag("--remove", arguments.remove, "Remove the passphrase")->excludes(new_passphrase);
   add_passphrase_option(command);
 }
 
@@ -101,8 +101,8 @@ void add_key_command(CLI::App& program, Action& action) {
   CLI::App* keys = program.add_subcommand("key", "Check, copy and protect the investigator's key");
   keys->require_subcommand(1);
   add_key_check_command(*keys, action);
-  add_copy(*keys, action);
-  add_protect(*keys, action);
+  add_copy_command(*keys, action);
+  add_protect_command(*keys, action);
 }
 
 }  // namespace touchtrial::app

@@ -34,37 +34,36 @@ struct MergeArguments {
 };
 
 void refuse_existing_output(const fs::path& path) {
-  if (!is_there(path)) return;
+  if (!path_exists(path)) return;
   throw StoreError(one_line(path.string()) + ": exists already; give another name with -o");
 }
 
-merging::Stations stations_of(const std::vector<fs::path>& databases) {
+merging::Stations open_stations(const std::vector<fs::path>& databases) {
   merging::Stations stations;
   for (const fs::path& database : databases) {
-    const std::string where = database.string();
-    // Anything but a file name may contain a password, and is handled where messages do not repeat
-    // it.
-    const bool is_on_server = where.find("://") != std::string::npos;
-    if (!is_on_server) require_head_beside(database);
-    merging::Stations those = is_on_server
-                                  ? merging::stations_of_table(merging::open_bundle_table(where))
-                                  : merging::stations_of_file(database);
-    for (auto& station : those) stations.push_back(std::move(station));
+    const std::string location = database.string();
+    // An address may contain a password, so it is opened by code whose messages do not repeat it.
+    const bool is_on_server = location.find("://") != std::string::npos;
+    if (!is_on_server) check_against_heads(database);
+    merging::Stations new_stations =
+        is_on_server ? merging::stations_of_table(merging::open_bundle_table(location))
+                     : merging::stations_of_file(database);
+    for (auto& station : new_stations) stations.push_back(std::move(station));
   }
   return stations;
 }
 
-/// Copies versions and times of consents from the personal data beside the stations' databases,
-/// which is the part that exports use. Existing consents are unchanged.
+/// Copies the versions and times of consents from the personal data beside the stations' databases;
+/// exports need no more. Existing consents are unchanged.
 /// \return the number of consents of the merged database
 std::size_t merge_consents(const MergeArguments& arguments) {
   std::vector<record::PersonalRecord> consents;
   for (const fs::path& database : arguments.databases) {
     try {
-      for (const record::PersonalRecord& one : consents_beside(database)) {
-        consents.push_back({.participant = one.participant,
-                            .consent_version = one.consent_version,
-                            .consented_utc = one.consented_utc});
+      for (const record::PersonalRecord& consent : consents_beside(database)) {
+        consents.push_back({.participant = consent.participant,
+                            .consent_version = consent.consent_version,
+                            .consented_utc = consent.consented_utc});
       }
     } catch (const Error& error) {
       spdlog::warn("consents are left out: {}", error.what());
@@ -72,13 +71,13 @@ std::size_t merge_consents(const MergeArguments& arguments) {
   }
   if (consents.empty()) return 0;
   record::PersonalData data(record::personal_data_path(arguments.target));
-  std::vector<record::PersonalRecord> known = data.all();
-  for (const record::PersonalRecord& one : consents) {
-    if (std::ranges::count(known, one) > 0) continue;
-    data.put(one);
-    known.push_back(one);
+  std::vector<record::PersonalRecord> merged = data.all();
+  for (const record::PersonalRecord& consent : consents) {
+    if (std::ranges::count(merged, consent) > 0) continue;
+    data.put(consent);
+    merged.push_back(consent);
   }
-  return known.size();
+  return merged.size();
 }
 
 /// The key beside one of the databases, if it belongs to a simulated study with this seal.
@@ -86,15 +85,15 @@ std::optional<study::StudyKey> simulated_key_beside(const std::vector<fs::path>&
                                                     const Digest& seal) {
   for (const fs::path& database : databases) {
     const fs::path path = key_path_for(database, {});
-    if (!is_there(path)) continue;
+    if (!path_exists(path)) continue;
     study::StudyKey key = study::load_study_key(path);
     if (key.simulated && key.seal == seal) return key;
   }
   return std::nullopt;
 }
 
-/// The key to write beside a merged database of simulated participants, as `simulate` does: it is
-/// derived from the study file, so it is not secret. The key of a study with people is not copied.
+/// The key to write beside a merged database of simulated participants, which is derived from the
+/// study file and thus not secret. The key of a study with people is not copied.
 /// \throws StoreError if another key is in its place
 std::optional<study::StudyKey> key_to_write(const MergeArguments& arguments,
                                             const merging::Stations& stations) {
@@ -106,7 +105,7 @@ std::optional<study::StudyKey> key_to_write(const MergeArguments& arguments,
   if (!commitment.simulated) return std::nullopt;
   std::optional<study::StudyKey> key = simulated_key_beside(arguments.databases, commitment.seal);
   const fs::path path = key_path_for(arguments.target, {});
-  if (key && is_there(path) && study::load_study_key(path).seal != commitment.seal) {
+  if (key && path_exists(path) && study::load_study_key(path).seal != commitment.seal) {
     throw StoreError(one_line(path.string()) +
                      ": is the key of another study; give another name with -o, or move it away");
   }
@@ -114,7 +113,7 @@ std::optional<study::StudyKey> key_to_write(const MergeArguments& arguments,
 }
 
 std::string summary_of(const MergeArguments& arguments, const merging::CollectReport& report,
-                       std::size_t consents, bool key) {
+                       std::size_t consents, bool has_key) {
   const std::string key_path = key_path_for(arguments.target, {}).string();
   if (!arguments.json) {
     return fmt::format(
@@ -124,8 +123,7 @@ std::string summary_of(const MergeArguments& arguments, const merging::CollectRe
         consents > 0
             ? fmt::format("consents {}\n", record::personal_data_path(arguments.target).string())
             : "",
-        key ? "key " + key_path + "\n"
-            : "the key of the study stays where it is: name it with --key\n");
+        has_key ? "key " + key_path + "\n" : "the study's key is not copied: name it with --key\n");
   }
   nlohmann::json left_out = nlohmann::json::array();
   for (const merging::SessionLeftOut& session : report.left_out) {
@@ -140,21 +138,22 @@ std::string summary_of(const MergeArguments& arguments, const merging::CollectRe
                                   {"left_out", left_out},
                                   {"superfluous", report.redundant},
                                   {"consents", consents},
-                                  {"key", key ? nlohmann::json(key_path) : nullptr}};
+                                  {"key", has_key ? nlohmann::json(key_path) : nullptr}};
   return json_text(summary);
 }
 
 int merge(const MergeArguments& arguments) {
   if (arguments.target.empty()) throw UsageError("merge: -o is empty; give it a file name");
   refuse_existing_output(arguments.target);
-  merging::Stations stations = stations_of(arguments.databases);
+  merging::Stations stations = open_stations(arguments.databases);
   const std::optional<study::StudyKey> key = key_to_write(arguments, stations);
   const merging::CollectReport report =
       merging::collect_into_file(std::move(stations), arguments.target, progress_bar("merging"));
   for (const merging::SessionLeftOut& session : report.left_out)
     spdlog::warn("{}", session.words());
   for (const std::string& name : report.redundant) {
-    spdlog::warn("{}", one_line(name + ": has no finished session that the others do not have"));
+    spdlog::warn("{}",
+                 one_line(name + ": adds no finished session to those of the other databases"));
   }
   if (key) study::save_study_key(key_path_for(arguments.target, {}), *key);
   print(summary_of(arguments, report, merge_consents(arguments), key.has_value()));
@@ -164,9 +163,8 @@ int merge(const MergeArguments& arguments) {
 }  // namespace
 
 void add_merge_command(CLI::App& program, Action& action) {
-  const auto [command, arguments] =
-      add_command(program, action, "merge",
-                  "Make one database from several stations' databases of one study", merge);
+  const auto [command, arguments] = add_command(
+      program, action, "merge", "Merge the databases of a study's stations into one", merge);
   command
       .add_option("DB", arguments.databases,
                   "Databases of the stations, or the postgresql:// address of a study")

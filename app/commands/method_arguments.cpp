@@ -34,22 +34,23 @@ const std::vector<MethodOption>& method_options() {
   return options;
 }
 
-std::string owners_of(const MethodOption& option) {
-  return listed(option.methods, " or ", [](engine::Method one) { return engine::name_of(one); });
+std::string methods_text(const MethodOption& option) {
+  return listed(option.methods, " or ",
+                [](engine::Method method) { return engine::name_of(method); });
 }
 
 void refuse_unused_seed(const CLI::App& command, engine::Control control) {
   if (control != engine::Control::none || command.count("--seed") == 0) return;
-  throw UsageError("extract: --seed has no effect here; it belongs to --control phase-scrambled");
+  throw UsageError("extract: --seed has no effect here; it applies to --control phase-scrambled");
 }
 
-void refuse_unused(const CLI::App& command, engine::Method method) {
+void refuse_unused_options(const CLI::App& command, engine::Method method) {
   for (const MethodOption& option : method_options()) {
-    const bool used =
+    const bool is_used =
         std::find(option.methods.begin(), option.methods.end(), method) != option.methods.end();
-    if (used || command.count(option.name) == 0) continue;
+    if (is_used || command.count(option.name) == 0) continue;
     throw UsageError(std::string("extract: ") + option.name +
-                     " has no effect here; it belongs to --method " + owners_of(option));
+                     " has no effect here; it applies to --method " + methods_text(option));
   }
 }
 
@@ -58,25 +59,25 @@ void refuse_unused(const CLI::App& command, engine::Method method) {
                    " is not auto or \"frequency,degrees;frequency,degrees\"");
 }
 
-/// Reads the number at `from`, and moves `from` past it.
-double take_number(const std::string& text, std::size_t& from) {
+/// Reads the number at `start`, and moves `start` past it.
+double parse_number(const std::string& text, std::size_t& start) {
   double number = 0.0;
   const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data() + from, end, number);
+  const auto [stop, error] = std::from_chars(text.data() + start, end, number);
   if (error != std::errc{}) refuse_components(text);
-  from = static_cast<std::size_t>(stop - text.data());
+  start = static_cast<std::size_t>(stop - text.data());
   return number;
 }
 
-/// "f,theta;f,theta"
-std::vector<engine::GaborComponent> components_from(const std::string& text) {
+/// Parses "f,theta;f,theta".
+std::vector<engine::GaborComponent> parse_components(const std::string& text) {
   std::vector<engine::GaborComponent> components;
   std::size_t i = 0;
   while (true) {
     engine::GaborComponent component;
-    component.frequency_cycles_per_px = take_number(text, i);
+    component.frequency_cycles_per_px = parse_number(text, i);
     if (i >= text.size() || text[i++] != ',') refuse_components(text);
-    component.direction_deg = take_number(text, i);
+    component.direction_deg = parse_number(text, i);
     components.push_back(component);
     if (i == text.size()) return components;
     if (text[i++] != ';') refuse_components(text);
@@ -85,20 +86,21 @@ std::vector<engine::GaborComponent> components_from(const std::string& text) {
 
 void read_components(const std::string& text, engine::TvGaborOptions& options) {
   options.automatic = text == "auto";
-  if (!options.automatic) options.components = components_from(text);
+  if (!options.automatic) options.components = parse_components(text);
 }
 
-void check(const engine::ExtractionOptions& options) {
+void check_ranges(const engine::ExtractionOptions& options) {
   try {
     engine::check_options(options);
   } catch (const std::invalid_argument& error) {
-    const std::string what = error.what();
-    const bool of_component = what.starts_with("frequency") || what.starts_with("direction");
-    throw UsageError("extract: --" + (of_component ? "components: " + what : what));
+    const std::string message = error.what();
+    const bool is_component_error =
+        message.starts_with("frequency") || message.starts_with("direction");
+    throw UsageError("extract: --" + (is_component_error ? "components: " + message : message));
   }
 }
 
-void add_words(CLI::App& command, MethodArguments& arguments) {
+void add_named_options(CLI::App& command, MethodArguments& arguments) {
   command.add_option("--method", arguments.method, "Extraction method")
       ->check(CLI::IsMember(engine::method_names()))
       ->capture_default_str();
@@ -119,7 +121,7 @@ void add_words(CLI::App& command, MethodArguments& arguments) {
       "(tv-gabor)");
   command
       .add_option("--control", arguments.control,
-                  "Turn the texture into its control: the same spectrum without structure")
+                  "Replace the texture with a control: the same spectrum without structure")
       ->check(CLI::IsMember(words_of(engine::kControlNames)))
       ->capture_default_str();
 }
@@ -129,41 +131,41 @@ void add_number(CLI::App& command, const char* option, double& number, const cha
   command.add_option(option, number, meaning)->check(CLI::Range(low, high))->capture_default_str();
 }
 
-void add_numbers(CLI::App& command, engine::ExtractionOptions& numbers) {
+void add_number_options(CLI::App& command, engine::ExtractionOptions& values) {
   using Options = engine::ExtractionOptions;
   // The parser has no half-open ranges; check_options checks this one.
-  command.add_option("--order", numbers.order, "Fractional order, 0 <= V < 1 (fixed)");
-  add_count_option(command, "--radius", numbers.radius,
+  command.add_option("--order", values.order, "Fractional order, 0 <= V < 1 (fixed)");
+  add_count_option(command, "--radius", values.radius,
                    "Radius K of the mask (adaptive, fixed) or of the window (median)", 1,
                    Options::kMaxRadius);
-  add_count_option(command, "--levels", numbers.levels, "Levels of sub-bands (adaptive)", 1,
+  add_count_option(command, "--levels", values.levels, "Levels of sub-bands (adaptive)", 1,
                    Options::kMaxLevels);
   command
-      .add_option("--sigma", numbers.sigma_px,
+      .add_option("--sigma", values.sigma_px,
                   "Standard deviation, pixels, 0 < S <= 1000 (gaussian)")
       ->capture_default_str();
-  add_number(command, "--threshold", numbers.threshold_grey,
+  add_number(command, "--threshold", values.threshold_grey,
              "Smallest difference that counts as texture, grey levels (median)", 0.0, 255.0);
-  add_number(command, "--divisor", numbers.divisor, "Divisor of the norm of the gradient (edge)",
+  add_number(command, "--divisor", values.divisor, "Divisor of the norm of the gradient (edge)",
              Options::kMinDivisor, Options::kMaxDivisor);
-  add_number(command, "--lambda", numbers.tv_gabor.lambda, "Weight of the texture norm (tv-gabor)",
+  add_number(command, "--lambda", values.tv_gabor.lambda, "Weight of the texture norm (tv-gabor)",
              engine::TvGaborOptions::kMinLambda, engine::TvGaborOptions::kMaxLambda);
-  add_seed_option(command, numbers.control_seed, "Seed of the control's random phases");
+  add_seed_option(command, values.control_seed, "Seed of the control's random phases");
 }
 
 }  // namespace
 
 void add_method_options(CLI::App& command, MethodArguments& arguments) {
   arguments.command = &command;
-  add_words(command, arguments);
-  add_numbers(command, arguments.numbers);
+  add_named_options(command, arguments);
+  add_number_options(command, arguments.values);
 }
 
 engine::ExtractionOptions extraction_options(const MethodArguments& arguments) {
   const CLI::App& command = *arguments.command;
-  engine::ExtractionOptions options = arguments.numbers;
+  engine::ExtractionOptions options = arguments.values;
   options.method = *engine::method_from_name(arguments.method);
-  refuse_unused(command, options.method);
+  refuse_unused_options(command, options.method);
   if (options.method == engine::Method::fixed && command.count("--order") == 0) {
     throw UsageError("extract: --method fixed needs --order V, 0 <= V < 1");
   }
@@ -173,7 +175,7 @@ engine::ExtractionOptions extraction_options(const MethodArguments& arguments) {
   options.control = *value_in(engine::kControlNames, arguments.control);
   refuse_unused_seed(command, options.control);
   if (command.count("--components") > 0) read_components(arguments.components, options.tv_gabor);
-  check(options);
+  check_ranges(options);
   return options;
 }
 

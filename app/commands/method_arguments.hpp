@@ -1,4 +1,4 @@
-/// \file The command-line options of the extraction methods. Private to app: it shows the parser's
+/// \file The command-line options of the extraction methods. Private to app: it exposes the parser's
 /// type.
 #pragma once
 
@@ -20,7 +20,7 @@ struct MethodArguments {
   std::string combine = "sum";
   std::string components;  ///< "auto", "f,theta;f,theta", or empty for the default
   std::string control = "none";
-  engine::ExtractionOptions numbers;
+  engine::ExtractionOptions values;
   const CLI::App* command = nullptr;  ///< the command that has the options
 };
 
@@ -32,7 +32,7 @@ void add_method_options(CLI::App& command, MethodArguments& arguments);
 /// \throws UsageError for an option that the method lacks, or a value out of range
 [[nodiscard]] engine::ExtractionOptions extraction_options(const MethodArguments& arguments);
 
-/// The words of a table as a list for the parser.
+/// The names in a table as a list for the parser.
 template <typename Value, std::size_t size>
 [[nodiscard]] std::vector<std::string> words_of(const std::array<Named<Value>, size>& table) {
   const auto names = names_in(table);

@@ -1,7 +1,7 @@
 // new: asks a few questions and writes a runnable study, with a comment at every key.
 #include "app/commands/commands.hpp"
-#include "app/commands/given_pictures.hpp"
-#include "app/commands/made_folder.hpp"
+#include "app/commands/input_pictures.hpp"
+#include "app/commands/new_folder.hpp"
 #include "app/commands/new_study_template.hpp"
 #include "app/terminal/console.hpp"
 #include "core/errors.hpp"
@@ -45,14 +45,14 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-/// By option, for instance "--people".
+/// The answers by option, for instance "--people".
 using Answers = std::map<std::string, std::string>;
 
 /// A question that is asked unless its option is given.
 struct NewQuestion {
   std::string option;
   std::string text;
-  CLI::Validator allowed;
+  CLI::Validator validator;
   std::function<std::string(const Answers&)> default_value;  ///< the default, for Return and --yes
   bool (*is_asked)(const Answers&) = [](const Answers&) { return true; };
 };
@@ -60,7 +60,7 @@ struct NewQuestion {
 struct NewArguments {
   fs::path folder;
   Answers answers;
-  int size_px = 0;  ///< 0: size_for the device
+  int size_px = 0;  ///< 0: the size that size_for returns for the device
   int crops = 5;
   engine::SampleScale scale;
   bool yes = false;
@@ -78,21 +78,21 @@ bool is_plain_name(std::string_view name) {
 }
 
 bool is_version(const std::string& text) {
-  const bool has_edge = !text.empty() && (text.front() == ' ' || text.back() == ' ');
-  return text.size() <= 64 && !has_edge && one_line(text) == text;
+  const bool has_outer_blank = !text.empty() && (text.front() == ' ' || text.back() == ' ');
+  return text.size() <= 64 && !has_outer_blank && one_line(text) == text;
 }
 
-/// Returns an answer that `is_allowed`, or throws the message.
+/// A validator that refuses other answers with the message.
 template <typename IsAllowed>
-CLI::Validator allowed_if(IsAllowed is_allowed, const std::string& message,
-                          const std::string& kind) {
+CLI::Validator validator_for(IsAllowed is_allowed, const std::string& message,
+                             const std::string& kind) {
   return {[=](const std::string& text) { return is_allowed(text) ? std::string() : message; },
           kind};
 }
 
 template <typename Number>
-CLI::Validator number_within(Number low, Number high) {
-  return allowed_if(
+CLI::Validator number_validator(Number low, Number high) {
+  return validator_for(
       [=](const std::string& text) {
         const auto number = number_in<Number>(text);
         return number && *number >= low && *number <= high;
@@ -108,7 +108,7 @@ int visits_of(const Answers& answers) {
   return *number_in<int>(answers.at("--visits"));
 }
 
-std::vector<std::string> groups_in(const std::string& text) {
+std::vector<std::string> parse_groups(const std::string& text) {
   std::vector<std::string> groups;
   std::istringstream names(text);
   for (std::string name; std::getline(names, name, ',');) {
@@ -120,16 +120,16 @@ std::vector<std::string> groups_in(const std::string& text) {
   return groups;
 }
 
-bool are_groups(const std::string& text) {
-  const std::vector<std::string> groups = groups_in(text);
-  const std::set<std::string> different(groups.begin(), groups.end());
+bool is_group_list(const std::string& text) {
+  const std::vector<std::string> groups = parse_groups(text);
+  const std::set<std::string> unique_groups(groups.begin(), groups.end());
   return groups.empty() ||
-         (groups.size() >= 2 && groups.size() <= kMaxGroups && different.size() == groups.size() &&
-          std::ranges::all_of(groups, is_plain_name));
+         (groups.size() >= 2 && groups.size() <= kMaxGroups &&
+          unique_groups.size() == groups.size() && std::ranges::all_of(groups, is_plain_name));
 }
 
 std::vector<NewQuestion> new_questions() {
-  const auto always = [](std::string answer) {
+  const auto constant = [](std::string answer) {
     return [answer = std::move(answer)](const Answers&) { return answer; };
   };
   const std::vector<std::string> protocols = protocols_of_new_studies();
@@ -145,40 +145,40 @@ std::vector<NewQuestion> new_questions() {
   };
   return {
       {"--name", "Name of the study",
-       allowed_if(is_plain_name, "must have 1 to 64 of the characters 0-9 A-Z a-z _ -", "NAME"),
-       always(kDefaultName)},
+       validator_for(is_plain_name, "must have 1 to 64 of the characters 0-9 A-Z a-z _ -", "NAME"),
+       constant(kDefaultName)},
       {"--protocol",
        "Protocol: " + listed(protocols, " or ") +
-           "; for thresholds, copy a ready study with touchtrial examples",
-       CLI::IsMember(protocols), always(protocols.front())},
+           "; for thresholds, copy an example study with touchtrial examples",
+       CLI::IsMember(protocols), constant(protocols.front())},
       {"--device",
-       "Device that the study is for, such as touch or omega; empty: none, and simulated people "
-       "hold an ideal device",
-       allowed_if(
-           is_device,
-           "must be one of " + listed(devices, " or ") + "; a model's file is named in the study",
-           "NAME"),
-       always("")},
-      {"--pictures", "Folder of your photographs; empty: five of the program's textures",
-       allowed_if(is_folder, "is not a folder; check the path", "FOLDER"), always("")},
-      {"--people", "Number of participants", number_within(2, 100'000), always("20")},
+       "Device of the study, such as touch or omega; empty: none, and simulated people hold an "
+       "ideal device",
+       validator_for(is_device,
+                     "must be one of " + listed(devices, " or ") +
+                         "; to use a model file, name it in the study file",
+                     "NAME"),
+       constant("")},
+      {"--pictures", "Folder of your photographs; empty: five built-in textures",
+       validator_for(is_folder, "is not a folder; check the path", "FOLDER"), constant("")},
+      {"--people", "Number of participants", number_validator(2, 100'000), constant("20")},
       {"--worth",
-       "Smallest relevant effect, percentage points: right answers above chance, or of one method "
-       "above another",
-       number_within(1.0, 50.0),
+       "Smallest relevant effect, percentage points: right answers above chance, or the difference "
+       "between methods",
+       number_validator(1.0, 50.0),
        [](const Answers& answers) { return methods_of(answers) > 1 ? "10" : "20"; }},
       {"--language", "Language of the participants: " + listed(languages, " or "),
-       CLI::IsMember(languages), always(languages.front())},
+       CLI::IsMember(languages), constant(languages.front())},
       {"--consent", "Version of the consent form; empty: none",
-       allowed_if(is_version, "must be at most 64 bytes without blanks at its ends", "VERSION"),
-       always("")},
-      {"--visits", "Visits of each participant", number_within(1, 100), always("1")},
-      {"--between", "Minimum days between two visits", number_within(0.0, 3650.0), always("7"),
+       validator_for(is_version, "must be at most 64 bytes without blanks at its ends", "VERSION"),
+       constant("")},
+      {"--visits", "Visits of each participant", number_validator(1, 100), constant("1")},
+      {"--between", "Minimum days between two visits", number_validator(0.0, 3650.0), constant("7"),
        [](const Answers& answers) { return visits_of(answers) > 1; }},
       {"--groups", "Groups that participants are assigned to, such as trained,control; empty: none",
-       allowed_if(are_groups, "must be 2 to 16 names of 0-9 A-Z a-z _ - with commas between them",
-                  "NAMES"),
-       always("")},
+       validator_for(is_group_list,
+                     "must be 2 to 16 names of 0-9 A-Z a-z _ - with commas between them", "NAMES"),
+       constant("")},
   };
 }
 
@@ -190,14 +190,14 @@ std::string typed_answer(const NewQuestion& question, const std::string& default
     std::string line;
     if (!std::getline(std::cin, line)) {
       std::fputs("\n", stderr);
-      throw UsageError("new: there is no answer for " + question.option +
-                       "; nothing was written: answer the questions, or give --yes for the usual "
-                       "answers");
+      throw UsageError("new: the input ended before the answer to " + question.option +
+                       "; nothing was written: answer the questions, or give --yes for the "
+                       "default answers");
     }
     if (line.empty()) return default_value;
-    const std::string wrong = question.allowed(line);
-    if (wrong.empty()) return line;
-    std::fputs((one_line(line + ": " + wrong) + "\n").c_str(), stderr);
+    const std::string message = question.validator(line);
+    if (message.empty()) return line;
+    std::fputs((one_line(line + ": " + message) + "\n").c_str(), stderr);
   }
 }
 
@@ -212,16 +212,16 @@ stimuli::ImportOptions import_options(const NewArguments& arguments) {
   return options;
 }
 
-/// Asks for another size and number of crops that the photographs can provide.
-void ask_crops(NewArguments& arguments, const stimuli::CropsDoNotFit& now) {
+/// Asks for a size and a number of crops that the photographs can provide.
+void ask_crops(NewArguments& arguments, const stimuli::CropsDoNotFit& error) {
   const auto answer = [](const char* option, const char* text, int low, int high,
                          int default_value) {
-    const NewQuestion question{option, text, number_within(low, high), {}};
+    const NewQuestion question{option, text, number_validator(low, high), {}};
     return *number_in<int>(typed_answer(question, std::to_string(default_value)));
   };
   arguments.size_px =
       answer("--size", "Side of a picture, pixels", stimuli::kMinCropSizePx,
-             stimuli::kMaxCropSizePx, now.size_px() > 0 ? now.size_px() : arguments.size_px);
+             stimuli::kMaxCropSizePx, error.size_px() > 0 ? error.size_px() : arguments.size_px);
   arguments.crops = answer("--crops", "Crops of the photographs of each texture", 1,
                            stimuli::kMaxCropsOfClass, arguments.crops);
 }
@@ -229,50 +229,49 @@ void ask_crops(NewArguments& arguments, const stimuli::CropsDoNotFit& now) {
 /// Checks the photographs before further questions. If they are too small, asks for the size and
 /// number of crops; if they are unusable, for another folder.
 /// \param question  "--pictures"
-/// \param typed  the folder was typed as an answer; an unusable folder from an option is refused
-void try_pictures(NewArguments& arguments, const NewQuestion& question, bool typed) {
+/// \param is_typed  whether the folder was an answer; an unusable folder from an option is refused
+void check_pictures(NewArguments& arguments, const NewQuestion& question, bool is_typed) {
   std::string& folder = arguments.answers.at(question.option);
   while (!folder.empty()) {
     try {
-      return naming_faults(
+      return with_faults_printed(
           [&] { stimuli::try_photographs(import_options(arguments), progress_bar("reading")); });
-    } catch (const stimuli::CropsDoNotFit& small) {
+    } catch (const stimuli::CropsDoNotFit& error) {
       if (arguments.yes) throw;
-      std::fputs((one_line(small.what()) + "\n").c_str(), stderr);
-      const bool smaller_suffices = small.size_px() > 0 || small.crops() > 0;
+      std::fputs((one_line(error.what()) + "\n").c_str(), stderr);
+      const bool smaller_suffices = error.size_px() > 0 || error.crops() > 0;
       if (smaller_suffices) {
-        ask_crops(arguments, small);
-      } else if (typed) {
+        ask_crops(arguments, error);
+      } else if (is_typed) {
         folder = typed_answer(question, "");
       } else {
         throw;
       }
-    } catch (const FileError& wrong) {
-      if (!typed || arguments.yes) throw;
-      std::fputs((one_line(wrong.what()) + "\n").c_str(), stderr);
+    } catch (const FileError& error) {
+      if (!is_typed || arguments.yes) throw;
+      std::fputs((one_line(error.what()) + "\n").c_str(), stderr);
       folder = typed_answer(question, "");
     }
   }
 }
 
-/// \return the default size of pictures, pixels: of those whose plane the device reaches, in tens
-/// \param device  "" : none
+/// \return the default size of pictures, pixels: limited to a plane that the device can reach
+/// \param device  empty: none
 int size_for(const std::string& device) {
   constexpr int kDefaultSide = stimuli::kDefaultStimulusSizePx;
   if (device.empty()) return kDefaultSide;
   const PlaneGeometry default_plane{engine::RenderingOptions{}.pitch_mm, kDefaultSide,
                                     kDefaultSide};
-  const PlaneGeometry fits =
+  const PlaneGeometry largest_plane =
       device::fit_plane(default_plane, device::model_of_device(device).workspace).largest;
-  const int side = std::min(fits.width_px, fits.height_px);
+  const int side = std::min(largest_plane.width_px, largest_plane.height_px);
   return std::max(side == kDefaultSide ? side : side / 10 * 10, stimuli::kMinCropSizePx);
 }
 
-/// Asks the questions without options. The default name is the folder's.
-void interview(NewArguments& arguments) {
-  const fs::path& given = arguments.folder;
-  const std::string folder =
-      (given.has_filename() ? given : given.parent_path()).filename().string();
+/// Asks the questions whose options are not given. The default name is the folder's.
+void ask_questions(NewArguments& arguments) {
+  const fs::path& path = arguments.folder;
+  const std::string folder = (path.has_filename() ? path : path.parent_path()).filename().string();
   for (const NewQuestion& question : new_questions()) {
     const bool is_given = arguments.answers.contains(question.option);
     if (!is_given) {
@@ -285,7 +284,7 @@ void interview(NewArguments& arguments) {
     if (question.option == "--device" && arguments.size_px == 0) {
       arguments.size_px = size_for(arguments.answers.at(question.option));
     }
-    if (question.option == "--pictures") try_pictures(arguments, question, !is_given);
+    if (question.option == "--pictures") check_pictures(arguments, question, !is_given);
   }
 }
 
@@ -301,11 +300,11 @@ struct NewStudy {
 Json generated_classes(const NewStudy& study, const std::string& ending, stimuli::StimulusKind kind,
                        int size_px) {
   const fs::path folder = study.file.stem().string() + ending;
-  const stimuli::StimulusManifest made = stimuli::generate_default_stimuli(
+  const stimuli::StimulusManifest manifest = stimuli::generate_default_stimuli(
       study.file.parent_path() / folder, {.size_px = size_px, .exemplars = 1, .kind = kind},
       progress_bar("generating"));
   Json classes = Json::array();
-  for (const stimuli::StimulusEntry& entry : made.entries) {
+  for (const stimuli::StimulusEntry& entry : manifest.entries) {
     classes.push_back(
         {{"label", entry.label}, {"images", {(folder / entry.file).generic_string()}}});
   }
@@ -315,79 +314,80 @@ Json generated_classes(const NewStudy& study, const std::string& ending, stimuli
 void import_pictures(const NewArguments& arguments, NewStudy& study) {
   stimuli::ImportOptions options = import_options(arguments);
   options.study = study.file;
-  const stimuli::ImportReport report = naming_faults(
+  const stimuli::ImportReport report = with_faults_printed(
       [&] { return stimuli::import_photographs(options, progress_bar("importing")); });
   for (const std::string& warning : report.warnings) spdlog::warn("{}", warning);
-  const Json imported = Json::parse(text_of(read_file(study.file)));
-  study.classes = imported.at("classes");
-  study.seed = imported.at("seed").get<std::uint64_t>();
+  const Json study_json = Json::parse(text_of(read_file(study.file)));
+  study.classes = study_json.at("classes");
+  study.seed = study_json.at("seed").get<std::uint64_t>();
 }
 
 /// Whether a class has a label that looks like `label`.
 bool has_label(const Json& classes, const std::string& label) {
-  return std::ranges::any_of(classes, [&](const Json& one) {
-    return skeleton_of(one.at("label").get<std::string>()) == skeleton_of(label);
+  return std::ranges::any_of(classes, [&](const Json& entry) {
+    return skeleton_of(entry.at("label").get<std::string>()) == skeleton_of(label);
   });
 }
 
-/// Practice textures have the classes' size. Without practice if fewer than two have labels that
-/// the study does not use.
+/// Adds practice textures of the classes' size whose labels the study does not use; none if there
+/// are fewer than two.
 void add_practice(NewStudy& study, int size_px) {
-  for (const Json& one :
+  for (const Json& entry :
        generated_classes(study, ".practice", stimuli::StimulusKind::practice, size_px)) {
-    if (!has_label(study.classes, one.at("label").get<std::string>()))
-      study.practice.push_back(one);
+    if (!has_label(study.classes, entry.at("label").get<std::string>()))
+      study.practice.push_back(entry);
   }
   if (study.practice.size() < 2) study.practice.clear();
 }
 
-/// The list's entries, one a line.
+/// The list's entries, one per line.
 std::string lines_of(const Json& list, const std::string& indent) {
   std::string text;
   for (const Json& entry : list) text += (text.empty() ? "" : ",\n" + indent) + entry.dump();
   return text;
 }
 
-using Fillings = std::map<std::string, std::string, std::less<>>;
+using Placeholders = std::map<std::string, std::string, std::less<>>;
 
-/// A line of the template with names in braces replaced by values.
-std::string filled_line(std::string_view line, const Fillings& fillings) {
-  std::string filled;
-  for (std::size_t at = 0; at < line.size();) {
-    const std::size_t end = line[at] == '{' ? line.find('}', at) : line.npos;
-    const auto found =
-        end == line.npos ? fillings.end() : fillings.find(line.substr(at + 1, end - at - 1));
-    if (found == fillings.end()) {
-      filled += line[at++];
+/// A line of the template with the names in braces replaced by their values.
+std::string expanded_line(std::string_view line, const Placeholders& placeholders) {
+  std::string expansion;
+  for (std::size_t position = 0; position < line.size();) {
+    const std::size_t end = line[position] == '{' ? line.find('}', position) : line.npos;
+    const auto placeholder = end == line.npos
+                                 ? placeholders.end()
+                                 : placeholders.find(line.substr(position + 1, end - position - 1));
+    if (placeholder == placeholders.end()) {
+      expansion += line[position++];
     } else {
-      filled += found->second;
-      at = end + 1;
+      expansion += placeholder->second;
+      position = end + 1;
     }
   }
-  return filled + "\n";
+  return expansion + "\n";
 }
 
-/// The template of new_study.json.in. Lines between "#if NAME" and "#else" or "#end" are included
-/// if NAME has a value, those between "#else" and "#end" if it has none.
-std::string filled_in(const std::string& text, const Fillings& fillings) {
-  std::string filled;
+/// Expands the template new_study.json.in. Lines between "#if NAME" and "#else" or "#end" are
+/// included if NAME has a value, lines between "#else" and "#end" if it has none.
+std::string expanded_template(const std::string& text, const Placeholders& placeholders) {
+  std::string expansion;
   std::istringstream lines(text);
-  bool is_kept = true;
+  bool is_included = true;
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with("#if ")) {
-      is_kept = fillings.contains(std::string_view(line).substr(4));
+      is_included = placeholders.contains(std::string_view(line).substr(4));
     } else if (line == "#else") {
-      is_kept = !is_kept;
+      is_included = !is_included;
     } else if (line == "#end") {
-      is_kept = true;
-    } else if (is_kept) {
-      filled += filled_line(line, fillings);
+      is_included = true;
+    } else if (is_included) {
+      expansion += expanded_line(line, placeholders);
     }
   }
-  return filled;
+  return expansion;
 }
 
-std::string in_json(const std::string& text) {
+std::string json_string(const std::string& text) {
   return Json(text).dump();
 }
 
@@ -401,34 +401,36 @@ double effect_of(const NewArguments& arguments, std::size_t classes) {
 
 std::string study_text(const NewArguments& arguments, const NewStudy& study) {
   const Answers& answers = arguments.answers;
-  Fillings fillings = {{"name", in_json(answers.at("--name"))},
-                       {"protocol", in_json(answers.at("--protocol"))},
-                       {"classes", lines_of(study.classes, "    ")},
-                       {"number_of_classes", std::to_string(study.classes.size())},
-                       {"language", in_json(answers.at("--language"))},
-                       {"consent", in_json(answers.at("--consent"))},
-                       {"people", std::to_string(*number_in<int>(answers.at("--people")))},
-                       {"worth", fmt::format("{:g}", *number_in<double>(answers.at("--worth")))},
-                       {"effect", number_text(effect_of(arguments, study.classes.size()))},
-                       {"visits", std::to_string(visits_of(answers))},
-                       {"seed", std::to_string(study.seed)}};
-  if (methods_of(answers) > 1) fillings["compares"] = "";
-  if (!answers.at("--device").empty()) fillings["device"] = in_json(answers.at("--device"));
-  if (!study.practice.empty()) fillings["practice"] = lines_of(study.practice, "      ");
-  if (const auto groups = groups_in(answers.at("--groups")); !groups.empty()) {
-    fillings["groups"] = Json(groups).dump();
+  Placeholders placeholders = {
+      {"name", json_string(answers.at("--name"))},
+      {"protocol", json_string(answers.at("--protocol"))},
+      {"classes", lines_of(study.classes, "    ")},
+      {"number_of_classes", std::to_string(study.classes.size())},
+      {"language", json_string(answers.at("--language"))},
+      {"consent", json_string(answers.at("--consent"))},
+      {"people", std::to_string(*number_in<int>(answers.at("--people")))},
+      {"worth", fmt::format("{:g}", *number_in<double>(answers.at("--worth")))},
+      {"effect", number_text(effect_of(arguments, study.classes.size()))},
+      {"visits", std::to_string(visits_of(answers))},
+      {"seed", std::to_string(study.seed)}};
+  if (methods_of(answers) > 1) placeholders["compares"] = "";
+  if (!answers.at("--device").empty()) placeholders["device"] = json_string(answers.at("--device"));
+  if (!study.practice.empty()) placeholders["practice"] = lines_of(study.practice, "      ");
+  if (const auto groups = parse_groups(answers.at("--groups")); !groups.empty()) {
+    placeholders["groups"] = Json(groups).dump();
   }
   if (visits_of(answers) > 1) {
-    fillings["several_visits"] = "";
-    fillings["between"] = number_text(*number_in<double>(answers.at("--between")));
+    placeholders["several_visits"] = "";
+    placeholders["between"] = number_text(*number_in<double>(answers.at("--between")));
   }
-  return filled_in(new_study_template(), fillings);
+  return expanded_template(new_study_template(), placeholders);
 }
 
 std::string next_steps(const NewArguments& arguments, const NewStudy& study) {
   const std::string file = shell_word(study.file.string());
   return fmt::format(
-      "study    {}\npictures {}\n\nLook at its screens, make its forces and its key, and rehearse "
+      "study    {}\npictures {}\n\nPreview its screens, prepare its forces and its key, and "
+      "rehearse "
       "it with simulated people:\n\n  touchtrial preview {}\n  touchtrial prepare {}\n  touchtrial "
       "simulate {} --participants {} --db {}\n",
       study.file.string(), stimuli::default_pictures_folder(study.file).string(), file, file, file,
@@ -436,14 +438,14 @@ std::string next_steps(const NewArguments& arguments, const NewStudy& study) {
       shell_word((study.file.parent_path() / "rehearsal.db").string()));
 }
 
-int write_new_study(const NewArguments& given) {
-  NewArguments arguments = given;
+int write_new_study(const NewArguments& initial) {
+  NewArguments arguments = initial;
   if (!arguments.folder.empty()) require_free(arguments.folder);
-  interview(arguments);
+  ask_questions(arguments);
   const std::string& name = arguments.answers.at("--name");
   const fs::path folder = arguments.folder.empty() ? fs::path(name) : arguments.folder;
   require_free(folder);
-  MadeFolder made(folder);
+  NewFolder new_folder(folder);
   NewStudy study{.file = folder / (name + ".json")};
   if (arguments.answers.at("--pictures").empty()) {
     study.classes =
@@ -454,7 +456,7 @@ int write_new_study(const NewArguments& given) {
   add_practice(study, arguments.size_px);
   write_output(study.file, study_text(arguments, study));
   static_cast<void>(study::load_study(study.file));
-  made.keep();
+  new_folder.keep();
   print(next_steps(arguments, study));
   return 0;
 }
@@ -475,14 +477,14 @@ void add_new_command(CLI::App& program, Action& action) {
               answers[option] = answer;
             },
             question.text)
-        ->check(question.allowed);
+        ->check(question.validator);
   }
   add_count_option(
       command, "--size", arguments.size_px,
-      "Side of a picture, pixels; one is 0.2 mm (default: 500, or what the device reaches)",
+      "Side of a picture, in pixels of 0.2 mm (default: 500, or less for a small workspace)",
       stimuli::kMinCropSizePx, stimuli::kMaxCropSizePx);
-  add_count_option(command, "--crops", arguments.crops, "Crops of the photographs of each texture",
-                   1, stimuli::kMaxCropsOfClass);
+  add_count_option(command, "--crops", arguments.crops,
+                   "Number of crops of each texture's photographs", 1, stimuli::kMaxCropsOfClass);
   add_sample_options(command, arguments.scale);
   command.add_flag("--yes", arguments.yes, "Use the default answers without asking");
 }

@@ -1,8 +1,8 @@
-// paper: compares the source paper's figures and tables with those of given pictures.
+// paper: compares pictures with the source paper's figures and tables.
 #include "analysis/paper/paper_document.hpp"
 #include "analysis/report/figures/gnuplot.hpp"
 #include "app/commands/commands.hpp"
-#include "app/commands/given_pictures.hpp"
+#include "app/commands/input_pictures.hpp"
 #include "app/terminal/console.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kNumbers = "paper.json";
+constexpr const char* kNumbersFile = "paper.json";
 
 struct PaperArguments {
   std::vector<fs::path> images;
@@ -33,8 +33,8 @@ struct PaperArguments {
 
 using PaperImages = std::vector<analysis::PaperPicture>;
 
-GreyImage readable_picture(const fs::path& path) {
-  GreyImage image = read_given_picture(path);
+GreyImage read_large_picture(const fs::path& path) {
+  GreyImage image = read_input_picture(path);
   if (std::min(image.height(), image.width()) >= engine::kMsSsimSmallestSide) return image;
   throw FileError(fmt::format(
       "{}: has {} x {} px; MS-SSIM needs at least {} px on each side; give "
@@ -42,20 +42,20 @@ GreyImage readable_picture(const fs::path& path) {
       one_line(path.string()), image.width(), image.height(), engine::kMsSsimSmallestSide));
 }
 
-/// The given pictures, named by their files' names without ending, or by their whole paths if two
-/// files have one name.
-PaperImages pictures_in(const std::vector<fs::path>& paths) {
-  std::map<std::string, int> uses;
-  for (const fs::path& path : paths) ++uses[path.stem().string()];
+/// The given pictures, named after their files without extension, or after their full paths if two
+/// files have the same name.
+PaperImages read_pictures(const std::vector<fs::path>& paths) {
+  std::map<std::string, int> count_by_stem;
+  for (const fs::path& path : paths) ++count_by_stem[path.stem().string()];
   PaperImages pictures;
   for (const fs::path& path : paths) {
     const std::string stem = path.stem().string();
-    pictures.push_back({uses[stem] == 1 ? stem : path.string(), readable_picture(path)});
+    pictures.push_back({count_by_stem[stem] == 1 ? stem : path.string(), read_large_picture(path)});
   }
   return pictures;
 }
 
-/// The program's own pictures of one kind, as `stimuli generate` makes them.
+/// The built-in pictures of one kind, as `stimuli generate` makes them.
 PaperImages generated_pictures(stimuli::StimulusKind kind) {
   PaperImages pictures;
   for (const stimuli::StimulusRecipe& recipe : stimuli::stimulus_recipes()) {
@@ -70,7 +70,7 @@ PaperImages generated_pictures(stimuli::StimulusKind kind) {
 std::vector<std::string> names_of_output() {
   return {"paper.md",
           "paper.html",
-          kNumbers,
+          kNumbersFile,
           "images/paper-orders.svg",
           "images/paper-sweep.svg",
           "images/paper-forces.svg",
@@ -78,35 +78,36 @@ std::vector<std::string> names_of_output() {
 }
 
 void require_places(const fs::path& folder) {
-  if (is_there(folder) && !fs::is_directory(folder)) {
+  if (path_exists(folder) && !fs::is_directory(folder)) {
     throw FileError(one_line(folder.string()) + ": is not a folder; choose another with --out");
   }
-  for (const std::string& name : names_of_output()) require_output_place(folder / name);
+  for (const std::string& name : names_of_output()) require_output_path(folder / name);
 }
 
 /// Fig. 3, without an SVG if gnuplot cannot draw it.
-analysis::Picture drawn_sweep(const analysis::PaperMeasures& measures) {
+analysis::Picture draw_sweep(const analysis::PaperMeasures& measures) {
   const analysis::Figure figure = analysis::order_figure(measures.pictures);
   analysis::Picture picture{figure.id, figure.caption, figure.alt, ""};
   try {
     analysis::require_gnuplot();
   } catch (const Error& error) {
     std::fputs(
-        ("touchtrial: warning: without the figure of orders: " + one_line(error.what()) + "\n")
+        ("touchtrial: warning: the figure of orders is left out: " + one_line(error.what()) + "\n")
             .c_str(),
         stderr);
     return picture;
   }
-  picture.svg = analysis::drawn(figure, analysis::FigureFormat::svg);
+  picture.svg = analysis::draw_figure(figure, analysis::FigureFormat::svg);
   return picture;
 }
 
 void write_paper(const fs::path& folder, const analysis::Document& document,
                  const std::vector<analysis::Picture>& pictures, const std::string& numbers) {
   make_folder(folder / "images");
-  write_output(folder / kNumbers, numbers);
-  for (const analysis::Picture& one : pictures) {
-    if (!one.svg.empty()) write_output(folder / "images" / (one.id + ".svg"), one.svg);
+  write_output(folder / kNumbersFile, numbers);
+  for (const analysis::Picture& picture : pictures) {
+    if (picture.svg.empty()) continue;
+    write_output(folder / "images" / (picture.id + ".svg"), picture.svg);
   }
   write_output(folder / "paper.md", analysis::document_markdown(document, "images"));
   write_output(folder / "paper.html", analysis::page_html(document));
@@ -114,19 +115,21 @@ void write_paper(const fs::path& folder, const analysis::Document& document,
 
 int make_paper(const PaperArguments& arguments) {
   require_places(arguments.folder);
-  const bool own = arguments.images.empty();
-  const PaperImages pictures =
-      own ? generated_pictures(stimuli::StimulusKind::texture) : pictures_in(arguments.images);
-  const PaperImages compared = own ? generated_pictures(stimuli::StimulusKind::object) : pictures;
+  const bool uses_builtin = arguments.images.empty();
+  const PaperImages pictures = uses_builtin ? generated_pictures(stimuli::StimulusKind::texture)
+                                            : read_pictures(arguments.images);
+  const PaperImages comparison_pictures =
+      uses_builtin ? generated_pictures(stimuli::StimulusKind::object) : pictures;
   const analysis::PaperMeasures measures =
-      analysis::measure_for_paper(pictures, compared, progress_bar("measuring"));
-  const analysis::PaperPictures drawn = analysis::paper_pictures(pictures, compared);
-  const analysis::Picture sweep = drawn_sweep(measures);
+      analysis::measure_for_paper(pictures, comparison_pictures, progress_bar("measuring"));
+  const analysis::PaperPictures drawings = analysis::paper_pictures(pictures, comparison_pictures);
+  const analysis::Picture sweep = draw_sweep(measures);
   const analysis::Document document = analysis::paper_document(
-      measures, drawn, sweep,
-      own ? "the textures and objects that this program draws itself (docs/stimuli.md)"
-          : "the given pictures");
-  write_paper(arguments.folder, document, {drawn.orders, sweep, drawn.forces, drawn.methods},
+      measures, drawings, sweep,
+      uses_builtin ? "the textures and objects that this program draws itself (docs/stimuli.md)"
+                   : "the given pictures");
+  write_paper(arguments.folder, document,
+              {drawings.orders, sweep, drawings.forces, drawings.methods},
               analysis::paper_json(measures));
   print((arguments.folder / "paper.html").string() + "\n" +
         (arguments.folder / "paper.md").string() + "\n");

@@ -8,8 +8,8 @@
 namespace touchtrial::app {
 
 /// The curve that a study's levels refer to. With a database of pilots' detection thresholds, it is
-/// israr_2006 shifted by the mean difference, over people and stimuli, between them and the median
-/// simulated person on this device. Source: docs/perception.md, "Pilots".
+/// israr_2006 shifted by the mean difference, over people and stimuli, between these thresholds and
+/// those of the median simulated person on this device. Source: docs/perception.md, "Pilots".
 /// \param device  the study's
 /// \pre the study has a level
 /// \throws StudyError naming /rendering/gains/curve if the database is not an unblinded detection

@@ -1,3 +1,4 @@
+// plan: divides the participants of a study between its stations.
 #include "analysis/report/text_figures.hpp"
 #include "analysis/report/text_table.hpp"
 #include "app/commands/commands.hpp"
@@ -51,7 +52,7 @@ std::string ranges_text(const study::Station& station) {
 std::string plan_text(const study::StudyKey& key, const study::PackPlace& place) {
   std::string text =
       fmt::format("{}: {} at {}\n", key.study.name,
-                  analysis::counted(study::enrolments_of(key.stations), "participant"),
+                  analysis::counted(study::enrolment_count(key.stations), "participant"),
                   analysis::counted(static_cast<int>(key.stations.size()), "station"));
   for (const study::Station& station : key.stations) {
     text += analysis::wrapped(
@@ -60,8 +61,9 @@ std::string plan_text(const study::StudyKey& key, const study::PackPlace& place)
     text += "    " + place.station(station.name).string() + "\n";
   }
   return text +
-         "Give every station its own file beside the study file, and no other; there,\n"
-         "`touchtrial run ... --station NAME` takes its next number.\n";
+         "Put only a station's own file beside its study file; `touchtrial run ... --station "
+         "NAME`\n"
+         "then uses the station's next number.\n";
 }
 
 std::string plan_json(const study::StudyKey& key, const study::PackPlace& place) {
@@ -76,12 +78,13 @@ std::string plan_json(const study::StudyKey& key, const study::PackPlace& place)
                         {"file", place.station(station.name).string()}});
   }
   const nlohmann::ordered_json document = {{"study", key.study.name},
-                                           {"participants", study::enrolments_of(key.stations)},
+                                           {"participants", study::enrolment_count(key.stations)},
                                            {"stations", stations}};
   return json_text(document);
 }
 
-/// The group of every number up to `participants`, for the person who treats the groups.
+/// The group of every number up to `participants`, for the person who gives participants their
+/// treatment.
 std::string groups_text(const study::StudyKey& key, int participants, bool json) {
   const std::vector<std::string>& labels = key.study.groups.labels;
   if (labels.empty()) throw UsageError("plan: the study has no groups; leave --groups out");
@@ -106,14 +109,14 @@ bool is_divided(const study::StudyKey& key) {
   return key.stations.size() > 1 || key.stations.front().name != study::kOnlyStation;
 }
 
-/// The key's stations with --extend, else new ones.
+/// The key's stations with --extend, otherwise new ones.
 std::vector<study::Station> stations_to_fill(const PlanArguments& arguments,
                                              const study::StudyKey& key, const fs::path& path) {
   if (!arguments.extend) {
     if (is_divided(key)) {
       throw UsageError(path.string() +
                        ": the study is divided between stations already, which may use their "
-                       "numbers; hand out more with --extend");
+                       "numbers; add more with --extend");
     }
     return study::stations_named(station_names(arguments));
   }
@@ -122,48 +125,48 @@ std::vector<study::Station> stations_to_fill(const PlanArguments& arguments,
                      ": the study is not divided between stations; do that with --stations or "
                      "--names");
   }
-  const int had = study::enrolments_of(key.stations);
-  if (arguments.participants < had) {
+  const int assigned_count = study::enrolment_count(key.stations);
+  if (arguments.participants < assigned_count) {
     throw UsageError(fmt::format(
-        "{}: has numbers for {} participants, which cannot be withdrawn; give --participants {} or "
-        "more",
-        path.string(), had, had));
+        "{}: already assigns {} enrolment numbers, which cannot be revoked; give --participants {} "
+        "or more",
+        path.string(), assigned_count, assigned_count));
   }
   return key.stations;
 }
 
 int plan_enrolment(const PlanArguments& arguments) {
-  const bool divides = arguments.extend || arguments.stations > 0 || !arguments.names.empty();
-  if (!divides && !arguments.groups) {
+  const bool divides_study = arguments.extend || arguments.stations > 0 || !arguments.names.empty();
+  if (!divides_study && !arguments.groups) {
     throw UsageError("plan: the stations are missing; give --stations N, or their --names");
   }
   const study::Study study = study::load_study(arguments.study);
   const study::PackPlace place = pack_place_for(arguments.study, arguments.pack);
-  if (!is_there(place.key)) {
+  if (!path_exists(place.key)) {
     throw FileError(place.key.string() +
-                    ": there is no key, which a plan divides between stations; go to the machine "
-                    "that has it, or for a new study run `touchtrial prepare` first");
+                    ": the key does not exist here, and a plan needs it; use the machine that has "
+                    "it, or for a new study run `touchtrial prepare` first");
   }
   std::optional<study::PackLock> lock;
-  if (divides && is_there(place.pack)) lock.emplace(place.pack);
+  if (divides_study && path_exists(place.pack)) lock.emplace(place.pack);
   study::StudyKey key = study::load_study_key(place.key);
   if (arguments.groups) {
     print(groups_text(key, arguments.participants, arguments.json));
     return 0;
   }
   std::vector<study::Station> stations = stations_to_fill(arguments, key, place.key);
-  study::hand_out_enrolments(stations, arguments.participants);
+  study::assign_enrolments(stations, arguments.participants);
   if (stations.size() > 1 && study.registration.analysis &&
       !study.registration.analysis->looks.empty()) {
     spdlog::warn("{}", one_line(arguments.study.string() +
                                 ": the registration has interim looks, which a study of several "
-                                "stations cannot make; take them out and prepare again, or the "
-                                "study ends at its planned number"));
+                                "stations cannot make; remove them and prepare again; otherwise "
+                                "the study ends at its planned number of participants"));
   }
-  study::divide(key, std::move(stations));
+  study::assign_stations(key, std::move(stations));
   study::save_study_key(place.key, key);
   save_station_files(key, place);
-  // The file of the undivided study would present schedules that belong to no station.
+  // Removes the undivided study's file, whose schedules belong to no station now.
   fs::remove(place.station());
   print(arguments.json ? plan_json(key, place) : plan_text(key, place));
   return 0;
@@ -176,7 +179,7 @@ void add_plan_command(CLI::App& program, Action& action) {
       program, action, "plan",
       "Divide a prepared study between stations, before the first participant", plan_enrolment);
   add_study_argument(command, arguments.study);
-  command.add_option("--participants", arguments.participants, "Number of participants in all")
+  command.add_option("--participants", arguments.participants, "Total number of participants")
       ->check(CLI::Range(1, study::kMaxEnrolments))
       ->required();
   auto* stations = command

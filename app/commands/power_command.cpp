@@ -1,11 +1,15 @@
 // power: simulates a study many times.
 #include "analysis/planning/planner.hpp"
+#include "analysis/report/page/report_folder.hpp"
 #include "app/commands/commands.hpp"
 #include "app/commands/study_inputs.hpp"
 #include "app/terminal/console.hpp"
 #include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/outputs.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -21,28 +25,30 @@ namespace fs = std::filesystem;
 struct PowerArguments {
   fs::path study;
   fs::path subject;
-  std::string on;
+  std::string hand_device;
   std::string sizes = "8,12,16,20,30";
+  fs::path figure;  ///< folder of the power curve; empty: no figure
   planning::PowerOptions options;
   const CLI::App* command = nullptr;
 };
 
 /// \throws UsageError if an option does not apply to the study's protocol
-void refuse_options_of_others(const study::Study& study, const PowerArguments& arguments) {
-  for (const CLI::Option* given : arguments.command->get_options()) {
-    const std::string option = given->get_name();
-    const std::vector<std::string_view> takers = planning::protocols_with(option);
-    const bool is_known = std::ranges::find(takers, study.protocol_name()) != takers.end();
-    if (given->count() == 0 || takers.empty() || is_known) continue;
-    throw UsageError(one_line(
-        fmt::format("{}: is {}for studies of the protocol {}; leave it out", option,
-                    takers.size() == 1 ? "" : "not ",
-                    takers.size() == 1 ? std::string(takers.front()) : study.protocol_name())));
+void refuse_inapplicable_options(const study::Study& study, const PowerArguments& arguments) {
+  for (const CLI::Option* cli_option : arguments.command->get_options()) {
+    const std::string option = cli_option->get_name();
+    const std::vector<std::string_view> protocols = planning::protocols_with(option);
+    const bool is_applicable =
+        std::ranges::find(protocols, study.protocol_name()) != protocols.end();
+    if (cli_option->count() == 0 || protocols.empty() || is_applicable) continue;
+    throw UsageError(one_line(fmt::format(
+        "{}: is {}for studies of the protocol {}; leave it out", option,
+        protocols.size() == 1 ? "" : "not ",
+        protocols.size() == 1 ? std::string(protocols.front()) : study.protocol_name())));
   }
 }
 
 /// Refuses an empty value, for example from an unset shell variable: it would count as omitted, and
-/// the result would answer another question.
+/// change the question.
 void refuse_empty_values(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options()) {
     const auto& values = option->results();
@@ -54,9 +60,27 @@ void refuse_empty_values(const CLI::App& command) {
 }
 
 planning::PowerTools tools_for(const study::Study& study, const PowerArguments& arguments) {
-  return {[&] { return subject_for(arguments.subject, study, arguments.on); },
+  return {[&] { return subject_for(arguments.subject, study, arguments.hand_device); },
           [&] { return simulated_key(study, arguments.study); }, prepare_simulated_pack,
           progress_bar};
+}
+
+constexpr const char* kCurveFiles[] = {"power-curve.svg", "power-curve.pdf", "power-curve.csv",
+                                       "power-curve.gp",  "power-curve.py",  "power-curve.r"};
+
+void write_curve(const fs::path& folder, const planning::PowerCurve& curve) {
+  const analysis::DrawnFigures figures =
+      analysis::draw_report_figures({planning::power_figure(curve)});
+  make_folder(folder);
+  for (const auto& [path, content] : figures.files) {
+    write_output(folder / fs::path(path).filename(), content);
+  }
+  if (!figures.missing.empty()) {
+    std::fputs(
+        ("touchtrial: warning: power-curve: data and scripts only: " + figures.missing + "\n")
+            .c_str(),
+        stderr);
+  }
 }
 
 int power(const PowerArguments& arguments) {
@@ -67,12 +91,22 @@ int power(const PowerArguments& arguments) {
   planning::validate_plan(options.plan);
   const study::Study study = study::load_study(arguments.study);
   const planning::Planner& planner = planning::planner_of(study, "`power`");
-  refuse_options_of_others(study, arguments);
-  print(planner.power(study, options, tools_for(study, arguments)));
+  refuse_inapplicable_options(study, arguments);
+  const bool has_figure = !arguments.figure.empty();
+  if (has_figure) {
+    for (const char* name : kCurveFiles) require_output_path(arguments.figure / name);
+  }
+  const planning::PowerResult result = planner.power(study, options, tools_for(study, arguments));
+  print(result.text);
+  if (!has_figure) return 0;
+  if (result.curve.series.empty()) {
+    throw UsageError("--figure: the study compares no thresholds; give --width for a curve");
+  }
+  write_curve(arguments.figure, result.curve);
   return 0;
 }
 
-void add_stated_options(CLI::App& command, planning::PowerOptions& options) {
+void add_population_options(CLI::App& command, planning::PowerOptions& options) {
   CLI::Option* mean = command
                           .add_option("--mean", options.mean,
                                       "Instead of simulated hands: people's mean accuracy, or for "
@@ -86,7 +120,7 @@ void add_stated_options(CLI::App& command, planning::PowerOptions& options) {
   mean->needs(spread);
   command
       .add_option("--accuracy", options.accuracy,
-                  "With --mean and two methods: everybody's accuracy, averaged over both")
+                  "With --mean and two methods: the mean accuracy over both methods")
       ->type_name("SHARE")
       ->needs(mean);
 }
@@ -103,10 +137,9 @@ void add_threshold_options(CLI::App& command, planning::PowerOptions& options) {
       ->check(finite_range(0.001, 100.0))
       ->type_name("DB");
   command
-      .add_option(
-          "--difference", options.difference,
-          "Thresholds: which two to compare, first minus second, by their order in the study "
-          "(default: 1,2)")
+      .add_option("--difference", options.difference,
+                  "Thresholds: the two to compare, first minus second, by their order in the study "
+                  "(default: 1,2)")
       ->type_name("N,N");
   add_count_option(command, "--pool", options.pool,
                    "Thresholds, ratings: simulated participants from whom samples are drawn", 10,
@@ -127,8 +160,8 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
       ->capture_default_str();
   add_seed_option(command, plan.seed, "Seed of all random numbers");
   add_subject_option(command, arguments.subject);
-  add_on_option(command, arguments.on);
-  add_stated_options(command, options);
+  add_on_option(command, arguments.hand_device);
+  add_population_options(command, options);
   command
       .add_option(
           "--methods", options.methods,
@@ -141,9 +174,11 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
       ->type_name("SHARE");
   command
       .add_option("--explorations", plan.explorations,
-                  "Explorations of each stimulus from which trials draw")
+                  "Simulated explorations of each stimulus, from which trials are drawn")
       ->capture_default_str();
-  command.add_option("--trainings", plan.trainings, "Trainings from which studies draw")
+  command
+      .add_option("--trainings", plan.trainings,
+                  "Training runs of the simulated people, from which studies are drawn")
       ->capture_default_str();
   add_threshold_options(command, options);
   // The options describe simulated hands.
@@ -162,7 +197,14 @@ void add_power_command(CLI::App& program, Action& action) {
   arguments.command = &command;
   add_study_argument(command, arguments.study);
   add_plan_options(command, arguments);
+  command
+      .add_option(
+          "--figure", arguments.figure,
+          "Folder for the power curve: power-curve.svg and .pdf, its data, and scripts that "
+          "redraw it")
+      ->type_name("DIR");
   add_jobs_option(command, arguments.options.jobs);
+  add_force_flag(command);
   add_json_flag(command, arguments.options.json);
 }
 

@@ -1,5 +1,5 @@
-// prepare: the force fields and the key of a study. Its output does not link a stimulus to its
-// code.
+// prepare: makes the force fields and the key of a study. Its output does not link a stimulus to
+// its code.
 #include "analysis/planning/level_report.hpp"
 #include "app/commands/commands.hpp"
 #include "app/commands/prepared_secrets.hpp"
@@ -51,11 +51,11 @@ Json stimulus_json(const study::PreparedStimulus& stimulus) {
           {"statistics", statistics_json(stimulus.statistics)}};
 }
 
-// The size of a plane that a hand can stroke with the forearm at rest.
+// Limits of the side of a plane that a hand can stroke with the forearm at rest.
 constexpr double kMinPlaneMm = 20.0;
 constexpr double kMaxPlaneMm = 250.0;
 
-/// \return a remark on a plane of an unsuitable size; else empty
+/// \return a remark on an unsuitable size of the plane; otherwise empty
 std::string remark_on(const PlaneGeometry& plane) {
   if (std::min(plane.width_mm(), plane.height_mm()) < kMinPlaneMm) {
     return fmt::format(
@@ -79,7 +79,7 @@ std::string plane_text(const PlaneGeometry& plane) {
                      remark.empty() ? "" : ": " + remark);
 }
 
-/// Those of a prepared stimulus, by its class, exemplar and method.
+/// The levels of a prepared stimulus, by its class, exemplar and method.
 const simulation::PlaneLevels& levels_of(const study::PreparedStimulus& stimulus,
                                          const study::Study& study,
                                          const simulation::StimulusLevels& levels) {
@@ -167,17 +167,17 @@ std::string table_of(const study::PrepareReport& report) {
   return text;
 }
 
-/// One line: all stimuli of the study share their gains, unless they are equalised.
+/// One line, because all stimuli of a study share their gains unless they are equalised.
 std::string gains_of(const study::PrepareReport& report, engine::ModelKind model) {
   if (report.stimuli.empty()) return "";
   const engine::Gains first = report.stimuli.front().gains;
-  const bool shared =
+  const bool are_shared =
       std::all_of(report.stimuli.begin(), report.stimuli.end(),
                   [&](const study::PreparedStimulus& s) { return s.gains == first; });
-  if (!shared) return "gains: one for each stimulus, so that all are equally strong\n";
+  if (!are_shared) return "gains: one for each stimulus, so that all are equally strong\n";
   if (model == engine::ModelKind::surface) {
     return fmt::format("gain: height {:.6g} mm per grey level; forces at a load of {} N\n",
-                       first.height_mm, engine::kStatedLoadN);
+                       first.height_mm, engine::kReferenceLoadN);
   }
   return fmt::format(
       "gains: tangential {:.6g} N per grey level and pixel, normal {:.6g} N per grey level\n",
@@ -198,7 +198,7 @@ std::string line_of_totals(const study::PrepareReport& report) {
   return text + "\n";
 }
 
-/// Without warnings, which are printed separately.
+/// The levels without their warnings, which are printed separately.
 std::string levels_text(const study::Study& study, const simulation::StimulusLevels& levels) {
   analysis::Document document;
   document.sections.push_back(planning::levels_section(study, levels));
@@ -232,7 +232,7 @@ int prepare(const PrepareArguments& arguments) {
   lock.lock_key(place.key);
   PreparedSecrets secrets(study, place, arguments.passphrase);
   const study::StudyKey& key = secrets.key();
-  study::PrepareReport report = prepare_here(
+  study::PrepareReport report = prepare_with_progress(
       lock, key,
       {.publish_secrets = [&secrets] { secrets.publish(); }, .is_new_key = secrets.is_new()});
   const simulation::StimulusLevels levels = levels_of_pack(key);
@@ -259,7 +259,7 @@ void add_prepare_command(CLI::App& program, Action& action) {
   command.add_option("--pack", arguments.pack,
                      "Folder of the pack; the key is beside it (default: <study>.pack)");
   command.add_flag("--passphrase", arguments.passphrase,
-                   "Protect the key by a passphrase, which is asked for, or is the first line of "
+                   "Protect the key with a passphrase, from a prompt or the first line of "
                    "--passphrase-file");
   add_passphrase_option(command);
   add_json_flag(command, arguments.json);

@@ -18,63 +18,64 @@ namespace fs = std::filesystem;
 
 constexpr const char* kDraftEnding = ".unfinished";
 
-/// A new key would turn this into another study, and replace the station's file that its databases
-/// need.
+/// Refuses a new key for a prepared study: it would make another study, and replace the station's
+/// file that its databases need.
 void refuse_new_key(const study::PackPlace& place) {
   const fs::path station = place.station();
-  const fs::path found = is_there(station) ? station : place.pack;
-  if (!is_there(station) && !is_there(place.pack / "pack.json")) return;
-  throw FileError(place.key.string() + ": is not here, but " + found.string() +
-                  " was made with it; put the key here, or make a new study in another folder with "
+  const fs::path existing_file = path_exists(station) ? station : place.pack;
+  if (!path_exists(station) && !path_exists(place.pack / "pack.json")) return;
+  throw FileError(place.key.string() + ": does not exist, but " + existing_file.string() +
+                  " was made with this key; restore it, or make a new study in another folder with "
                   "--pack");
 }
 
-/// Another study's key, or a simulated one, is not replaced.
-void require_own(const study::StudyKey& earlier, const study::Study& study, const fs::path& path) {
-  if (earlier.simulated) {
+/// Refuses to replace the key of another study or a simulated one.
+void require_key_of(const study::StudyKey& previous_key, const study::Study& study,
+                    const fs::path& path) {
+  if (previous_key.simulated) {
     throw UsageError(path.string() +
                      ": is the key of a simulated study; give another folder with --pack");
   }
-  if (earlier.study.name != study.name) {
-    throw UsageError(path.string() + ": is the key of study \"" + earlier.study.name +
+  if (previous_key.study.name != study.name) {
+    throw UsageError(path.string() + ": is the key of study \"" + previous_key.study.name +
                      "\"; give another folder with --pack");
   }
 }
 
 /// The path to which the key of an earlier version of the study is moved.
-fs::path aside_place(const fs::path& key, const Digest& seal) {
+fs::path backup_path(const fs::path& key, const Digest& seal) {
   constexpr std::size_t kSealDigits = 8;
-  fs::path kept = key;
-  kept += "." + to_hex(seal).substr(0, kSealDigits);
-  return kept;
+  fs::path backup = key;
+  backup += "." + to_hex(seal).substr(0, kSealDigits);
+  return backup;
 }
 
-/// Removes drafts that a killed run left of this file, or of a file whose name starts with it.
+/// Removes the drafts that a killed run left of this file, or of files named after it.
 void remove_drafts_of(const fs::path& file) {
   std::error_code ignored;
-  const std::string beginning = file.filename().string() + ".";
+  const std::string prefix = file.filename().string() + ".";
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  std::vector<fs::path> left;
-  for (const auto& found : fs::directory_iterator(folder, ignored)) {
-    const std::string name = found.path().filename().string();
-    if (name.starts_with(beginning) && name.find(kDraftEnding) != std::string::npos) {
-      left.push_back(found.path());
+  std::vector<fs::path> leftover_drafts;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(prefix) && name.find(kDraftEnding) != std::string::npos) {
+      leftover_drafts.push_back(entry.path());
     }
   }
-  for (const fs::path& one : left) fs::remove(one, ignored);
+  for (const fs::path& draft : leftover_drafts) fs::remove(draft, ignored);
 }
 
 /// The target of a link, or the file itself.
-fs::path target_of(const fs::path& place) {
+fs::path target_of(const fs::path& path) {
   std::error_code error;
-  if (!fs::is_symlink(place, error)) return place;
-  const fs::path target = fs::canonical(place, error);
-  return error ? place : target;
+  if (!fs::is_symlink(path, error)) return path;
+  const fs::path target = fs::canonical(path, error);
+  return error ? path : target;
 }
 
-bool is_same(const fs::path& draft, const fs::path& place) {
-  return is_there(place) && read_file(draft) == read_file(place) &&
-         fs::status(draft).permissions() == fs::status(place).permissions();
+bool are_identical(const fs::path& draft, const fs::path& target) {
+  return path_exists(target) && read_file(draft) == read_file(target) &&
+         fs::status(draft).permissions() == fs::status(target).permissions();
 }
 
 }  // namespace
@@ -82,11 +83,11 @@ bool is_same(const fs::path& draft, const fs::path& place) {
 PreparedSecrets::PreparedSecrets(const study::Study& study, const study::PackPlace& place,
                                  bool passphrase)
     : place_(place) {
-  if (is_there(place.key)) {
-    before_ = read_file(place.key);
-    earlier_ = study::load_study_key(place.key);
-    require_own(*earlier_, study, place.key);
-    key_ = study::rekeyed(*earlier_, study);
+  if (path_exists(place.key)) {
+    previous_bytes_ = read_file(place.key);
+    previous_key_ = study::load_study_key(place.key);
+    require_key_of(*previous_key_, study, place.key);
+    key_ = study::rekeyed(*previous_key_, study);
   } else {
     refuse_new_key(place);
     SystemEntropy entropy;
@@ -97,34 +98,36 @@ PreparedSecrets::PreparedSecrets(const study::Study& study, const study::PackPla
 }
 
 PreparedSecrets::Drafts::~Drafts() {
-  for (const Draft& draft : in_order) remove_drafts_of(draft.place);
+  for (const Draft& draft : list) remove_drafts_of(draft.target);
 }
 
-fs::path PreparedSecrets::draft_for(const fs::path& place) {
-  const fs::path target = target_of(place);
+fs::path PreparedSecrets::draft_for(const fs::path& path) {
+  const fs::path target = target_of(path);
   remove_drafts_of(target);
   fs::path file = target;
   file += kDraftEnding;
-  drafts_.in_order.push_back({file, target});
+  drafts_.list.push_back({file, target});
   // A copy, so that a protected file keeps its passphrase.
-  if (is_there(target)) replace_file(file, read_file(target), FileMode::owner_only);
+  if (path_exists(target)) replace_file(file, read_file(target), FileMode::owner_only);
   return file;
 }
 
 void PreparedSecrets::draft_secrets(bool passphrase) {
-  const bool protects = passphrase && (is_new() || !study::is_protected(place_.key));
-  const std::string chosen = protects ? new_passphrase(place_.key, passphrase_files()) : "";
+  const bool adds_passphrase = passphrase && (is_new() || !study::is_protected(place_.key));
+  const std::string new_secret =
+      adds_passphrase ? new_passphrase(place_.key, passphrase_files()) : "";
   const auto save = [&](const fs::path& file, const study::StudyKey& key) {
-    protects ? study::save_study_key(file, key, chosen) : study::save_study_key(file, key);
+    adds_passphrase ? study::save_study_key(file, key, new_secret)
+                    : study::save_study_key(file, key);
   };
-  const fs::path draft_of_key = draft_for(place_.key);
-  if (earlier_ && earlier_->seal != key_.seal) {
-    const fs::path kept = draft_for(aside_place(target_of(place_.key), earlier_->seal));
-    replace_file(kept, before_, FileMode::owner_only);
-    if (protects) save(kept, *earlier_);
-    std::swap(drafts_.in_order[0], drafts_.in_order[1]);
+  const fs::path key_draft = draft_for(place_.key);
+  if (previous_key_ && previous_key_->seal != key_.seal) {
+    const fs::path backup = draft_for(backup_path(target_of(place_.key), previous_key_->seal));
+    replace_file(backup, previous_bytes_, FileMode::owner_only);
+    if (adds_passphrase) save(backup, *previous_key_);
+    std::swap(drafts_.list[0], drafts_.list[1]);
   }
-  save(draft_of_key, key_);
+  save(key_draft, key_);
   for (const study::Station& station : key_.stations) {
     study::save_station_key(draft_for(place_.station(station.name)),
                             study::station_key(key_, station.name));
@@ -132,26 +135,27 @@ void PreparedSecrets::draft_secrets(bool passphrase) {
 }
 
 void PreparedSecrets::publish() {
-  const Bytes now = is_there(place_.key) ? read_file(place_.key) : Bytes();
+  const Bytes current = path_exists(place_.key) ? read_file(place_.key) : Bytes();
   const auto refuse = [&] {
-    throw FileError(one_line(place_.key.string()) +
-                    ": another program has written the key meanwhile; run `touchtrial prepare` "
-                    "again");
+    throw FileError(
+        one_line(place_.key.string()) +
+        ": another program has written the key in the meantime; run `touchtrial prepare` "
+        "again");
   };
-  if (now != before_) refuse();
-  for (const Draft& draft : drafts_.in_order) {
-    if (is_same(draft.file, draft.place)) continue;
-    if (is_new() && draft.place == target_of(place_.key)) {
-      if (!move_to_free_name(draft.file, draft.place)) refuse();
+  if (current != previous_bytes_) refuse();
+  for (const Draft& draft : drafts_.list) {
+    if (are_identical(draft.file, draft.target)) continue;
+    if (is_new() && draft.target == target_of(place_.key)) {
+      if (!move_to_free_name(draft.file, draft.target)) refuse();
       continue;
     }
-    rename_file(draft.file, draft.place);
+    rename_file(draft.file, draft.target);
   }
-  if (!earlier_ || earlier_->seal == key_.seal) return;
+  if (!previous_key_ || previous_key_->seal == key_.seal) return;
   spdlog::warn(
-      "{}: the study has changed; the earlier key is kept as {}, because databases that it sealed "
+      "{}: the study has changed; the previous key is kept as {}, because databases sealed with it "
       "need it",
-      place_.key.string(), aside_place(place_.key, earlier_->seal).string());
+      place_.key.string(), backup_path(place_.key, previous_key_->seal).string());
 }
 
 }  // namespace touchtrial::app

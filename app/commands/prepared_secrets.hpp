@@ -17,10 +17,9 @@ namespace touchtrial::app {
 /// `publish` renames them; without it nothing changes. Use it while the pack is locked.
 class PreparedSecrets {
  public:
-  /// The secrets of an earlier key are reused, so that codes and fields stay valid. Removes the
-  /// drafts of a killed run.
-  /// \param passphrase  whether to protect a new or unprotected key by a passphrase, which is asked
-  ///   for
+  /// Reuses the secrets of a previous key, so that codes and fields stay valid. Removes
+  /// the drafts of a killed run.
+  /// \param passphrase  whether to ask for a passphrase that protects a new or unprotected key
   /// \throws UsageError if the key is a simulated study's, or another study's
   /// \throws FileError if a station's file or pack exists but its key is missing, or a file cannot be
   ///   read or written
@@ -28,17 +27,17 @@ class PreparedSecrets {
 
   [[nodiscard]] const study::StudyKey& key() const noexcept { return key_; }
   /// Whether the key is new and not yet in any file.
-  [[nodiscard]] bool is_new() const noexcept { return before_.empty(); }
+  [[nodiscard]] bool is_new() const noexcept { return previous_bytes_.empty(); }
 
-  /// Replaces the files, the key first, so that no station's file ever exists without the key that
-  /// opens what it seals.
-  /// \throws FileError if another program has written the key meanwhile, or the system refuses
+  /// Replaces the files, the key first, so that no station's file exists without the key that
+  /// decrypts its data.
+  /// \throws FileError if another program has written the key in the meantime, or the system refuses
   void publish();
 
  private:
   struct Draft {
     std::filesystem::path file;
-    std::filesystem::path place;
+    std::filesystem::path target;
   };
   /// Removes drafts that were not renamed.
   struct Drafts {
@@ -47,15 +46,15 @@ class PreparedSecrets {
     Drafts(const Drafts&) = delete;
     Drafts& operator=(const Drafts&) = delete;
 
-    std::vector<Draft> in_order;  ///< in the order of renaming
+    std::vector<Draft> list;  ///< in the order of renaming
   };
 
   void draft_secrets(bool passphrase);
-  std::filesystem::path draft_for(const std::filesystem::path& place);
+  std::filesystem::path draft_for(const std::filesystem::path& path);
 
   study::PackPlace place_;
-  Bytes before_;  ///< of the key's file; empty: it did not exist
-  std::optional<study::StudyKey> earlier_;
+  Bytes previous_bytes_;  ///< content of the key's file; empty: no such file
+  std::optional<study::StudyKey> previous_key_;
   study::StudyKey key_;
   Drafts drafts_;
 };

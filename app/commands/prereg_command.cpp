@@ -1,3 +1,4 @@
+// prereg: writes the preregistration page of a study.
 #include "app/commands/commands.hpp"
 #include "app/commands/study_inputs.hpp"
 #include "app/terminal/console.hpp"
@@ -30,14 +31,14 @@ int preregister(const PreregArguments& arguments) {
   const study::Study study = study::load_study(arguments.study);
   study::PackPlace place = pack_place_for(arguments.study, arguments.pack);
   if (!arguments.key.empty()) place.key = arguments.key;
-  if (!is_there(place.key) || !is_there(place.pack)) {
+  if (!path_exists(place.key) || !path_exists(place.pack)) {
     throw UsageError(
         arguments.study.string() +
         ": is not prepared; run `touchtrial prepare` first, or name the pack and the key "
         "with --pack and --key");
   }
   refuse_link(arguments.output);
-  if (!arguments.output.empty() && is_there(arguments.output)) {
+  if (!arguments.output.empty() && path_exists(arguments.output)) {
     throw UsageError(arguments.output.string() +
                      ": exists already and may have been deposited; choose another name");
   }
@@ -45,7 +46,7 @@ int preregister(const PreregArguments& arguments) {
   const engine::Pack pack(place.pack);
   session::require_prepared(study, key, place.key, pack);
   for (const std::string& missing : session::missing_statements(study.registration)) {
-    // The program checks a study only against accuracies.
+    // Only studies with a choice of classes have a checkable estimand.
     if (missing == "/registration/estimand" && !study::chooses_classes(study)) continue;
     spdlog::warn("{}: {} is not stated; add it before depositing the page",
                  arguments.study.string(), missing);

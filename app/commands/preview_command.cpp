@@ -1,4 +1,4 @@
-// preview: the participant's screens of a study, without a session.
+// preview: shows the participant's screens of a study, without a session.
 #include "app/commands/commands.hpp"
 #include "app/run/run_session.hpp"
 #include "app/terminal/console.hpp"
@@ -50,7 +50,7 @@ class Preview {
         study_(study::load_study(arguments.study)),
         texts_(session_texts(study_)),
         screens_(preview_screens(study_, texts_)),
-        first_(place_of(arguments.screen)),
+        first_index_(index_of(arguments.screen)),
         window_(options()) {}
 
   int show() {
@@ -59,33 +59,33 @@ class Preview {
   }
 
  private:
-  /// The next screen that the designer requests.
-  enum class Turn { none, back, next, answered, end };
+  /// The designer's request.
+  enum class Request { none, back, next, answered, end };
 
-  [[nodiscard]] std::size_t place_of(const std::string& name) const {
+  [[nodiscard]] std::size_t index_of(const std::string& name) const {
     if (name.empty()) return 0;
-    const auto found = std::ranges::find(screens_, name, &PreviewScreen::name);
-    if (found != screens_.end()) return static_cast<std::size_t>(found - screens_.begin());
+    const auto match = std::ranges::find(screens_, name, &PreviewScreen::name);
+    if (match != screens_.end()) return static_cast<std::size_t>(match - screens_.begin());
     std::vector<std::string_view> names;
-    for (const PreviewScreen& one : screens_) names.push_back(one.name);
+    for (const PreviewScreen& screen : screens_) names.push_back(screen.name);
     const auto nearest = nearest_name(name, names);
     throw UsageError(one_line("preview: the study has no screen '" + name + "'; " +
                               (nearest ? "did you mean " + std::string(*nearest) + "? " : "") +
-                              "there are " + listed(names, " and ")));
+                              "the screens are " + listed(names, " and ")));
   }
 
   ParticipantWindowOptions options() {
-    ParticipantWindowOptions wanted = window_options(arguments_.window, study_);
-    if (arguments_.mouse) wanted.pointer = &pointer_;
-    if (arguments_.console) wanted.console = &console_;
-    wanted.min_touch = {0.0, 0.0};  // nothing is felt
-    wanted.interval_pause = std::chrono::hours(24);
-    wanted.turn = [this](int pages) {
-      turn_ = pages == 0 ? Turn::end : pages < 0 ? Turn::back : Turn::next;
+    ParticipantWindowOptions result = window_options(arguments_.window, study_);
+    if (arguments_.mouse) result.pointer = &pointer_;
+    if (arguments_.console) result.console = &console_;
+    result.min_touch = {0.0, 0.0};  // there is no texture
+    result.interval_pause = std::chrono::hours(24);
+    result.turn_page = [this](int pages) {
+      request_ = pages == 0 ? Request::end : pages < 0 ? Request::back : Request::next;
     };
-    const GreyImage& picture = wanted.pictures.at(study_.classes.front().label);
+    const GreyImage& picture = result.pictures.at(study_.classes.front().label);
     plane_ = {study_.rendering.pitch_mm, picture.height(), picture.width()};
-    return wanted;
+    return result;
   }
 
   void require_shown() {
@@ -94,7 +94,8 @@ class Preview {
     }
   }
 
-  /// Shows a screen as after a plane, so that nothing of the previous screen remains.
+  /// Shows a screen as it appears after an exploration, so that nothing of the previous screen
+  /// remains.
   void present(const PreviewScreen& screen) {
     session::SessionStatus status;
     status.participant = "P07";
@@ -102,11 +103,11 @@ class Preview {
     status.device = "preview";
     console_.show(status);
     window_.see_pictures(preview_labels(study_, screen));
-    static_cast<void>(window_.attend(session::ReadyStep{1, 1, screen.practice}));
-    if (screen.interval) static_cast<void>(window_.attend(*screen.interval));
+    static_cast<void>(window_.show_step(session::ReadyStep{1, 1, screen.practice}));
+    if (screen.interval) static_cast<void>(window_.show_step(*screen.interval));
     window_.show_exploring(plane_);
     if (!screen.step) return;
-    static_cast<void>(window_.attend(*screen.step));
+    static_cast<void>(window_.show_step(*screen.step));
     for (InputEvent key : screen.keys) {
       require_shown();
       key.at = std::chrono::steady_clock::now();
@@ -115,17 +116,17 @@ class Preview {
   }
 
   void draw() {
-    const bool is_one = !arguments_.screen.empty();
-    const std::size_t end = is_one ? first_ + 1 : screens_.size();
+    const bool is_single = !arguments_.screen.empty();
+    const std::size_t end = is_single ? first_index_ + 1 : screens_.size();
     const auto file_of = [&](const PreviewScreen& screen) {
-      return is_one ? arguments_.png : arguments_.png / (screen.name + ".png");
+      return is_single ? arguments_.png : arguments_.png / (screen.name + ".png");
     };
     const fs::path console =
-        (is_one ? arguments_.png.parent_path() : arguments_.png) / "console.png";
-    for (std::size_t i = first_; i < end; ++i) require_output_place(file_of(screens_[i]));
-    if (arguments_.console) require_output_place(console);
-    if (!is_one) make_folder(arguments_.png);
-    for (std::size_t i = first_; i < end; ++i) {
+        (is_single ? arguments_.png.parent_path() : arguments_.png) / "console.png";
+    for (std::size_t i = first_index_; i < end; ++i) require_output_path(file_of(screens_[i]));
+    if (arguments_.console) require_output_path(console);
+    if (!is_single) make_folder(arguments_.png);
+    for (std::size_t i = first_index_; i < end; ++i) {
       present(screens_[i]);
       require_shown();
       write(file_of(screens_[i]), window_.picture());
@@ -139,40 +140,41 @@ class Preview {
   }
 
   void browse() {
-    print("Page Down: next screen, Page Up: the one before, Escape: end\n");
-    for (std::size_t at = first_;;) {
-      present(screens_[at]);
-      print(fmt::format("{} ({} of {})\n", screens_[at].name, at + 1, screens_.size()));
-      const Turn turn = wait_for_turn(screens_[at]);
-      if (turn == Turn::end) return;
-      if (turn == Turn::back) at -= at > 0 ? 1 : 0;
-      if (turn == Turn::next) at += at + 1 < screens_.size() ? 1 : 0;
-      if (turn != Turn::answered) continue;
-      at = after(at);
-      if (at == screens_.size()) return;
+    print("Page Down: next screen, Page Up: previous screen, Escape: end\n");
+    for (std::size_t index = first_index_;;) {
+      present(screens_[index]);
+      print(fmt::format("{} ({} of {})\n", screens_[index].name, index + 1, screens_.size()));
+      const Request request = wait_for_request(screens_[index]);
+      if (request == Request::end) return;
+      if (request == Request::back) index -= index > 0 ? 1 : 0;
+      if (request == Request::next) index += index + 1 < screens_.size() ? 1 : 0;
+      if (request != Request::answered) continue;
+      index = next_step_index(index);
+      if (index == screens_.size()) return;
     }
   }
 
-  /// The screen that follows all pages of a step.
-  [[nodiscard]] std::size_t after(std::size_t at) const {
-    const auto& step = screens_[at].step;
-    do ++at;
-    while (step && at < screens_.size() && screens_[at].step &&
-           is_same_step(*step, *screens_[at].step));
-    return at;
+  /// The index of the screen after all pages of a step.
+  [[nodiscard]] std::size_t next_step_index(std::size_t index) const {
+    const auto& step = screens_[index].step;
+    do ++index;
+    while (step && index < screens_.size() && screens_[index].step &&
+           is_same_step(*step, *screens_[index].step));
+    return index;
   }
 
-  Turn wait_for_turn(const PreviewScreen& screen) {
+  Request wait_for_request(const PreviewScreen& screen) {
     for (;;) {
-      if (window_.end_reason()) return Turn::end;
-      if (const Turn turn = turn_.exchange(Turn::none); turn != Turn::none) return turn;
+      if (window_.end_reason()) return Request::end;
+      if (const Request request = request_.exchange(Request::none); request != Request::none)
+        return request;
       if (screen.step) {
-        if (window_.attend(*screen.step)) return Turn::answered;
+        if (window_.show_step(*screen.step)) return Request::answered;
         continue;
       }
       device::ServoControl servo;
-      window_.exploring(servo);
-      if (servo.finish_asked() || servo.comfort_stop_asked()) return Turn::answered;
+      window_.while_exploring(servo);
+      if (servo.finish_requested() || servo.comfort_stop_requested()) return Request::answered;
       std::this_thread::sleep_for(kPreviewPause);
     }
   }
@@ -181,11 +183,11 @@ class Preview {
   study::Study study_;
   session::SessionTexts texts_;
   std::vector<PreviewScreen> screens_;
-  std::size_t first_;
+  std::size_t first_index_;
   PlaneGeometry plane_;
   device::PointerExchange pointer_;
-  std::atomic<Turn> turn_{Turn::none};
-  ExperimenterDesk console_{false};  ///< whose requests are ignored
+  std::atomic<Request> request_{Request::none};
+  ExperimenterDesk console_{false};  ///< its requests are ignored
   ParticipantWindow window_;
 };
 

@@ -21,7 +21,7 @@ struct ProcedureArguments {
   bool json = true;
 };
 
-/// Answers as typed: "1,0,1"; empty: none.
+/// Parses answers such as "1,0,1"; an empty text contains none.
 /// \throws UsageError if a part is neither 0 nor 1
 std::vector<bool> parse_answers(std::string_view text) {
   std::vector<bool> answers;
@@ -30,7 +30,7 @@ std::vector<bool> parse_answers(std::string_view text) {
     const std::string_view part = text.substr(begin, end - begin);
     if (part != "0" && part != "1") {
       throw UsageError("--answers: " + in_quotes(part) +
-                       " is not an answer; give 1 for right and 0 for wrong, as 1,0,1");
+                       " is not an answer; give 1 for right and 0 for wrong, for instance 1,0,1");
     }
     answers.push_back(part == "1");
     begin = end + 1;

@@ -1,5 +1,5 @@
-// reference: manual pages, documentation and shell completion from the parser; not in the help.
-// help: as --help.
+// reference (hidden): writes manual pages, documentation and shell completion from the parser.
+// help: prints the same as --help.
 #include "app/commands/commands.hpp"
 #include "app/commands/shipped_files.hpp"
 #include "app/reference/pages.hpp"
@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 int write_reference(const CLI::App& program, const fs::path& folder) {
   for (const char* part : {"man", "commands"}) make_folder(folder / part);
   for (const CLI::App* command : every_command(program)) {
-    const std::string words = words_of(*command, "-");
+    const std::string words = full_name_of(*command, "-");
     const std::string name = command == &program ? "index" : words.substr(words.find('-') + 1);
     write_output(folder / "man" / (words + ".1"), page_of(*command, PageFormat::man));
     write_output(folder / "commands" / (name + ".md"), page_of(*command, PageFormat::markdown));
@@ -40,7 +40,7 @@ int show_help(const CLI::App& program, const std::vector<std::string>& words) {
   return 0;
 }
 
-/// The subject files that come with the program.
+/// The subject files of the installation.
 std::vector<std::string> shipped_subjects() {
   std::vector<std::string> files;
   try {
@@ -54,7 +54,7 @@ std::vector<std::string> shipped_subjects() {
   return files;
 }
 
-/// The values of an option; only some of them if files or other text are possible too.
+/// Values to complete for an option, which may also accept others.
 std::vector<std::string> completed_values(const CLI::Option& option) {
   if (std::vector<std::string> choices = choices_of(option); !choices.empty()) return choices;
   const std::string name = option.get_name();
@@ -64,9 +64,9 @@ std::vector<std::string> completed_values(const CLI::Option& option) {
   return {};
 }
 
-/// Every line already contains the program's name.
+/// The full name without the program's name.
 std::string command_path(const CLI::App& command) {
-  const std::string words = words_of(command);
+  const std::string words = full_name_of(command);
   const std::size_t space = words.find(' ');
   return space == std::string::npos ? "" : words.substr(space + 1);
 }
@@ -78,17 +78,18 @@ std::string command_path(const CLI::App& command) {
 std::string completion_table(const CLI::App& program) {
   std::string table;
   for (const CLI::App* command : every_command(program)) {
-    const std::string place = command_path(*command);
-    for (const CLI::App* below : command->get_subcommands({})) {
-      if (below->get_group().empty()) continue;
-      table += fmt::format("{}|{}|-|{}\n", place, below->get_name(), below->get_description());
+    const std::string path = command_path(*command);
+    for (const CLI::App* subcommand : command->get_subcommands({})) {
+      if (subcommand->get_group().empty()) continue;
+      table +=
+          fmt::format("{}|{}|-|{}\n", path, subcommand->get_name(), subcommand->get_description());
     }
     for (const CLI::Option* option : options_of(*command)) {
       const std::string values = option->get_items_expected_max() == 0
                                      ? "-"
                                      : fmt::format("{}", fmt::join(completed_values(*option), " "));
       for (const std::string& name : names_of(*option)) {
-        table += fmt::format("{}|{}|{}|{}\n", place, option->nonpositional() ? name : "", values,
+        table += fmt::format("{}|{}|{}|{}\n", path, option->nonpositional() ? name : "", values,
                              option->get_description());
       }
     }
@@ -102,8 +103,7 @@ void add_reference_command(CLI::App& program, Action& action) {
   auto folder = std::make_shared<fs::path>();
   auto is_table = std::make_shared<bool>(false);
   CLI::App* reference = program.add_subcommand(
-      "reference",
-      "Write manual pages and pages in Markdown, or the table that shells complete from");
+      "reference", "Write manual pages and Markdown pages, or the table for shell completion");
   reference->group("");
   CLI::Option* out = reference->add_option("--out", *folder, "Folder");
   reference->add_flag("--table", *is_table, "Print the table instead")->excludes(out);
@@ -117,7 +117,7 @@ void add_reference_command(CLI::App& program, Action& action) {
     };
   });
   auto words = std::make_shared<std::vector<std::string>>();
-  CLI::App* help = program.add_subcommand("help", "Show the help of a command, as --help does");
+  CLI::App* help = program.add_subcommand("help", "Show the help of a command, like --help");
   help->add_option("COMMAND", *words, "Words of the command, for instance device accept");
   help->callback(
       [=, &program, &action] { action = [=, &program] { return show_help(program, *words); }; });

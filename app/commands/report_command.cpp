@@ -1,3 +1,4 @@
+// report: prints the results of a study, or the quality of its data before unblinding.
 #include "analysis/outcomes/identities.hpp"
 #include "analysis/outcomes/outcomes.hpp"
 #include "analysis/outcomes/quality.hpp"
@@ -37,7 +38,7 @@ struct ReportArguments {
   bool paper_values = false;
   bool json = false;
   bool is_public = false;
-  analysis::HeadCheck heads{};  ///< of the database, when it is open
+  analysis::HeadCheck heads{};  ///< the comparison, once the database is open
 };
 
 void write_report(const ReportArguments& arguments, const analysis::ReportFiles& files) {
@@ -45,7 +46,7 @@ void write_report(const ReportArguments& arguments, const analysis::ReportFiles&
   print((arguments.folder / "report.html").string() + "\n");
 }
 
-/// Compares the database with its head files. A public report shows neither folders nor ids.
+/// Compares the database with its head files; a public report shows neither folders nor ids.
 analysis::HeadCheck heads_for(const record::StudyStore& store, const ReportArguments& arguments) {
   analysis::HeadCheck heads = analysis::check_heads(store, arguments.database);
   if (!heads.missing.empty())
@@ -83,7 +84,7 @@ void refuse_while_blind(const record::StudyState& state, const ReportArguments& 
   const std::string place =
       one_line(arguments.database.filename().string()) + ": " + blind_words(state);
   if (arguments.is_public) {
-    throw UsageError(place + ", and only results are published; omit --public");
+    throw UsageError(place + ", and --public applies to results only; omit it");
   }
   if (arguments.trial.empty() && arguments.cues != "yes") return;
   throw UsageError(place +
@@ -123,7 +124,8 @@ int write_outcomes(const record::StudyStore& store, const analysis::Outcomes& ou
   const analysis::DrawnFigures figures = analysis::draw_report_figures(
       results.figures(analysis::further_stamp(outcomes.pilot, provenance)));
   if (!figures.missing.empty()) {
-    std::fputs(("touchtrial: warning: without figures: " + figures.missing + "\n").c_str(), stderr);
+    std::fputs(("touchtrial: warning: figures are left out: " + figures.missing + "\n").c_str(),
+               stderr);
   }
   analysis::ReportFiles files =
       analysis::report_files(results.document(provenance, figures.pictures),
@@ -141,12 +143,12 @@ void print_results(const record::StudyStore& store, const analysis::Results& res
                                       columns_of_output()));
 }
 
-/// After a registered interim look.
+/// Reports only the registered question, after a registered interim look.
 int report_question(const record::StudyStore& store, const ReportArguments& arguments) {
   const study::StudyKey key = key_of_database(store, arguments.database, arguments.key);
-  const analysis::Outcomes outcomes = analysis::load_for_question(store, key);
-  const auto all = analysis::analysis_of(outcomes.design).results(outcomes, {});
-  const auto answer = analysis::question_alone(*all, store);
+  const analysis::Outcomes outcomes = analysis::load_outcomes_for_question(store, key);
+  const auto results = analysis::analysis_of(outcomes.design).results(outcomes, {});
+  const auto answer = analysis::registered_answer_only(*results, store);
   if (arguments.folder.empty()) {
     print_results(store, *answer, arguments);
   } else {
@@ -157,18 +159,18 @@ int report_question(const record::StudyStore& store, const ReportArguments& argu
   return 0;
 }
 
-/// With the levels of the stimuli. Most of the time of a small study's report would go into them:
-/// the terminal only says where they are.
-std::unique_ptr<const analysis::Results> with_levels_if_any(
+/// Adds the levels of the stimuli. Computing them takes most of the time of a small study's report,
+/// so a report on the terminal has only a note on where to find them.
+std::unique_ptr<const analysis::Results> with_levels_or_note(
     std::unique_ptr<const analysis::Results> results, const study::StudyKey& key,
     const ReportArguments& arguments) {
   if (!arguments.folder.empty() || arguments.json) return with_levels(std::move(results), key);
-  if (!is_there(key.pack_folder / "pack.json")) return results;
+  if (!path_exists(key.pack_folder / "pack.json")) return results;
   return planning::with_levels_note(std::move(results));
 }
 
-int report(const ReportArguments& given) {
-  ReportArguments arguments = given;
+int report(const ReportArguments& initial) {
+  ReportArguments arguments = initial;
   const record::StudyStore store =
       record::StudyStore::open(arguments.database, record::StudyStore::Access::read_only);
   arguments.heads = heads_for(store, arguments);
@@ -184,7 +186,7 @@ int report(const ReportArguments& given) {
   analysis::Outcomes outcomes = outcomes_of(store, key);
   if (arguments.is_public) outcomes = analysis::without_identities(std::move(outcomes));
   const analysis::TraceSource traces{store, key};
-  const auto results = with_levels_if_any(
+  const auto results = with_levels_or_note(
       analysis::analysis_of(outcomes.design).results(outcomes, report_options(arguments, traces)),
       key, arguments);
   if (!arguments.folder.empty()) return write_outcomes(store, outcomes, *results, arguments);
@@ -218,15 +220,17 @@ void add_report_command(CLI::App& program, Action& action) {
                                             "of day, and every reason, note and remark");
   command
       .add_option("--trial", arguments.trial,
-                  "Trial whose exploration is drawn over its texture, as P01:3 (default: if traces "
+                  "Trial whose exploration is drawn over its texture, for instance P01:3 (default: "
+                  "if traces "
                   "are read, the first counted trial of each method)")
       ->type_name("PARTICIPANT:N")
       ->excludes(is_public)
       ->needs(folder);
   command
-      .add_flag("--paper-values", arguments.paper_values,
-                "Mark the source paper's accuracies, of other images and another device, in the "
-                "figure by class")
+      .add_flag(
+          "--paper-values", arguments.paper_values,
+          "Show the source paper's accuracies (other images, another device) in the figure by "
+          "class")
       ->needs(folder);
 }
 

@@ -1,3 +1,4 @@
+// run: runs one session with one participant.
 #include "app/commands/commands.hpp"
 #include "app/run/run_session.hpp"
 #include "app/terminal/console.hpp"
@@ -22,7 +23,7 @@ int run(const RunOptions& options) {
   if (options.is_simulated() && !options.device.empty()) {
     throw UsageError("run: --device is for people; omit it with --subject");
   }
-  if (!options.on.empty() && !options.is_simulated() && options.device != "simulated") {
+  if (!options.hand_device.empty() && !options.is_simulated() && options.device != "simulated") {
     throw UsageError(
         "run: --on is for simulated hands; add --subject or --device simulated, or omit --on");
   }
@@ -36,7 +37,7 @@ int run(const RunOptions& options) {
 void add_session_options(CLI::App& command, RunOptions& options) {
   add_study_argument(command, options.study);
   command.add_option("--participant", options.participant,
-                     "Id, for instance P07; not a name (default: asked for in a window, with the "
+                     "Id, for instance P07; not a name (default: a window asks for it and the "
                      "consent)");
   command.add_option("--db", options.database, "Database; created if it does not exist")
       ->check(place_validator())
@@ -51,7 +52,7 @@ void add_session_options(CLI::App& command, RunOptions& options) {
   add_accept_loss_option(command, options.heads.accept_loss);
   add_passphrase_option(command);
   command.add_flag("--pilot", options.pilot,
-                   "A pilot session, never pooled; needs a database of its own");
+                   "A pilot session, never pooled; needs its own database");
   command
       .add_option_function<std::string>(
           "--on-existing",
@@ -60,7 +61,7 @@ void add_session_options(CLI::App& command, RunOptions& options) {
       ->type_name("refuse|resume|restart");
   command
       .add_option("--enrolment", options.enrolment,
-                  "Enrolment number, one of this station's (default: its next)")
+                  "Enrolment number of this station (default: its next)")
       ->check(CLI::Range(1, study::kMaxEnrolments));
   add_count_option(command, "--visit", options.visit,
                    "Number of the participant's visit, in a study with several", 1, 100);
@@ -70,7 +71,7 @@ void add_session_options(CLI::App& command, RunOptions& options) {
       ->excludes(file);
   command.add_option(
       "--accept-clock", options.accept_clock,
-      "Continue after a visit with a date in the future due to a wrong clock; the reason is "
+      "Continue after a visit whose date is in the future because of a wrong clock; the reason is "
       "recorded");
   add_yes_flag(command, options.yes);
 }
@@ -82,11 +83,12 @@ void add_device_options(CLI::App& command, RunOptions& options) {
                      "Certificate of the device's acceptance (default: NAME-certificate.json)");
   command.add_flag(
       "--allow-unverified", options.allow_unverified,
-      "Run a device with force without a valid certificate; everything is then stamped "
+      "Allow a force-feedback device without a valid certificate; all displays and data are marked "
       "UNVERIFIED DEVICE");
-  command.add_flag("--allow-late", options.allow_late,
-                   "Run a device with force although the system refuses real-time scheduling; "
-                   "recorded");
+  command.add_flag(
+      "--allow-late", options.allow_late,
+      "Allow a force-feedback device although the system refuses real-time scheduling; "
+      "this is recorded");
   command.add_flag("--console", options.console, "Open a window for the experimenter too");
   command
       .add_option("--console-monitor", options.console_monitor,
@@ -105,12 +107,12 @@ void add_device_options(CLI::App& command, RunOptions& options) {
 void add_simulation_options(CLI::App& command, RunOptions& options) {
   CLI::Option* const subject = command.add_option(
       "--subject", options.subject,
-      "Simulate the participant by this subject model, or by the built-in one if empty; without a "
+      "Simulate the participant with this subject model, or the built-in one if empty; without a "
       "window");
   command.add_flag("--headless")
       ->needs(subject)
       ->description("Without a window; implied by a simulated participant");
-  add_on_option(command, options.on);
+  add_on_option(command, options.hand_device);
   add_seed_option(command, options.seed, "Seed of the simulated participant");
   command.add_flag("--real-time", options.real_time, "Simulate the participant in real time");
 }

@@ -1,4 +1,4 @@
-// screen: the physical scale of a monitor.
+// screen: measures the physical scale of a monitor.
 #include "app/commands/commands.hpp"
 #include "app/terminal/console.hpp"
 #include "app/windows/participant/card_screen.hpp"
@@ -22,15 +22,15 @@ int calibrate_screen(const ParticipantWindowOptions& options) {
         "XDG_CONFIG_HOME");
   }
   ParticipantWindow window(options);
-  const ScreenScale before = window.screen();
-  const auto card = std::make_shared<CardScreen>(before.mm_per_unit);
+  const ScreenScale scale = window.screen();
+  const auto card = std::make_shared<CardScreen>(scale.mm_per_unit);
   bool is_measured = false;
   run_beside(window, [&] {
-    while (!is_measured && !window.end_reason()) is_measured = window.attend(card).has_value();
+    while (!is_measured && !window.end_reason()) is_measured = window.show_step(card).has_value();
   });
   if (!is_measured) throw UsageError("screen calibrate: cancelled; nothing was saved");
-  keep_measured_screen(before.monitor, card->mm_per_unit());
-  print(fmt::format("{}\n{:.5f} mm a pixel, {:.1f} pixels an inch; kept in {}\n", before.monitor,
+  save_measured_screen(scale.monitor, card->mm_per_unit());
+  print(fmt::format("{}\n{:.5f} mm per pixel, {:.1f} pixels per inch; saved in {}\n", scale.monitor,
                     card->mm_per_unit(), kMmPerInch / card->mm_per_unit(), file.string()));
   return 0;
 }

@@ -1,3 +1,4 @@
+// simulate: runs a whole study with simulated participants.
 #include "analysis/report/text_figures.hpp"
 #include "app/commands/commands.hpp"
 #include "app/commands/simulated_study.hpp"
@@ -55,7 +56,7 @@ void add_simulate_command(CLI::App& program, Action& action) {
                    1, 1'000'000);
   add_seed_option(command, options.seed, "Seed of the participants' random numbers");
   add_subject_option(command, arguments.study.subject);
-  add_on_option(command, arguments.study.on);
+  add_on_option(command, arguments.study.hand_device);
   add_jobs_option(command, options.jobs);
   command.add_flag("--keep-blind", arguments.study.keep_blind,
                    "Do not close and unblind at the end");

@@ -10,9 +10,9 @@ namespace touchtrial::app {
 
 struct StudyToSimulate {
   std::filesystem::path study;     ///< its file
-  std::filesystem::path database;  ///< to make; the key is written beside it
+  std::filesystem::path database;  ///< the file to create; the key is written beside it
   std::filesystem::path subject;   ///< a subject model; empty: the built-in one
-  std::string on;                  ///< as of subject_for
+  std::string hand_device;         ///< the simulated hands' device, as in subject_for
   simulation::SimulationOptions options;
   bool keep_blind = false;  ///< do not close and unblind the study
 };
@@ -21,10 +21,10 @@ struct StudyToSimulate {
 /// a terminal.
 /// \throws StoreError if the database, or another study's key, exists already
 /// \throws as load_study, subject_for, prepare_pack and simulation::simulate_study
-simulation::SimulationReport simulate_study(const StudyToSimulate& wanted);
+simulation::SimulationReport simulate_study(const StudyToSimulate& request);
 
 /// The result, as `simulate --json` prints it.
-[[nodiscard]] std::string simulation_json(const StudyToSimulate& wanted,
+[[nodiscard]] std::string simulation_json(const StudyToSimulate& request,
                                           const simulation::SimulationReport& report);
 
 }  // namespace touchtrial::app

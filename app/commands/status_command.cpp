@@ -1,4 +1,4 @@
-// status: the state of collection, and the command line for the next participant.
+// status: prints the state of collection, and the command line for the next participant.
 #include "analysis/outcomes/study_status.hpp"
 #include "analysis/verification/head_check.hpp"
 #include "app/commands/commands.hpp"
@@ -34,8 +34,8 @@ struct StatusArguments {
   bool json = false;
 };
 
-/// The study file and the station's file beside a database, if they exist.
-struct FilesBeside {
+/// The study file and the station's file of a database, if they exist.
+struct StatusFiles {
   fs::path study;
   std::optional<study::Study> design;
   fs::path station_file;
@@ -43,24 +43,24 @@ struct FilesBeside {
 };
 
 /// Uses the station's file if it belongs to the database. Never asks for a passphrase.
-void take_station_file(const fs::path& file, const record::StudyCommitment& commitment,
-                       FilesBeside& beside) {
-  if (!commitment.station || !is_there(file)) return;
+void use_station_file(const fs::path& file, const record::StudyCommitment& commitment,
+                      StatusFiles& study_files) {
+  if (!commitment.station || !path_exists(file)) return;
   try {
-    if (const auto signer = study::signer_in_clear(file)) {
-      if (*signer == commitment.station->key) beside.station_file = file;
+    if (const auto signer = study::unencrypted_signer(file)) {
+      if (*signer == commitment.station->key) study_files.station_file = file;
       return;
     }
     const study::StationKey key = study::load_station_key(file);
     if (key.signer().public_half() != commitment.station->key) return;
-    beside.station_file = file;
-    beside.station = key.station;
+    study_files.station_file = file;
+    study_files.station = key.station;
   } catch (const Error&) {
-    // Another study's, or damaged; `run` reports that. std
+    // The file is another study's, or damaged; `run` reports that.
   }
 }
 
-/// "<study>.json" of "<study>.station" or "<study>.NAME.station".
+/// The path "<study>.json" for "<study>.station" or "<study>.NAME.station".
 fs::path study_file_of(const fs::path& station_file, const std::string& station) {
   fs::path study = station_file;
   study.replace_extension();
@@ -70,107 +70,108 @@ fs::path study_file_of(const fs::path& station_file, const std::string& station)
 }
 
 /// Uses the study in the key beside a database that was simulated without a prepared study.
-void take_simulated_key(const fs::path& database, const record::StudyCommitment& commitment,
-                        FilesBeside& beside) {
+void use_simulated_key(const fs::path& database, const record::StudyCommitment& commitment,
+                       StatusFiles& study_files) {
   const fs::path path = key_path_for(database, {});
-  if (!commitment.simulated || !is_there(path) || study::is_protected(path)) return;
+  if (!commitment.simulated || !path_exists(path) || study::is_protected(path)) return;
   try {
     const study::StudyKey key = study::load_study_key(path);
-    if (key.simulated && key.seal == commitment.seal) beside.design = key.study;
+    if (key.simulated && key.seal == commitment.seal) study_files.design = key.study;
   } catch (const Error&) {
-    // Another study's, or damaged; `report` reports that.
+    // The key is another study's, or damaged; `report` reports that.
   }
 }
 
-/// The study file that a station's file beside it belongs to, if it can be read.
-void take_study_of_station(const std::string& station, FilesBeside& beside) {
-  const fs::path study = study_file_of(beside.station_file, station);
-  if (!is_there(study)) return;
+/// Uses the study file beside the station's file, if it can be read.
+void use_study_of_station(const std::string& station, StatusFiles& study_files) {
+  const fs::path study = study_file_of(study_files.station_file, station);
+  if (!path_exists(study)) return;
   try {
-    beside.design = study::load_study(study);
-    beside.study = study;
+    study_files.design = study::load_study(study);
+    study_files.study = study;
   } catch (const Error&) {
-    // Edited since; `run` reports that.
+    // The study file was edited; `run` reports that.
   }
 }
 
-/// Calls `see` with each file of a station beside the database, and then in the current folder.
-template <typename See>
-void for_each_station_file(const fs::path& database, See see) {
+/// Calls `visit` for each station's file beside the database, and then in the current folder.
+template <typename Visit>
+void for_each_station_file(const fs::path& database, Visit visit) {
   for (const fs::path& folder : {database.parent_path(), fs::path(".")}) {
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, ignored)) {
-      if (entry.path().extension() == ".station") see(entry.path().lexically_normal());
+      if (entry.path().extension() == ".station") visit(entry.path().lexically_normal());
     }
   }
 }
 
-FilesBeside files_beside(const StatusArguments& arguments,
-                         const record::StudyCommitment& commitment) {
-  FilesBeside beside;
+StatusFiles find_files(const StatusArguments& arguments,
+                       const record::StudyCommitment& commitment) {
+  StatusFiles study_files;
   const std::string station = commitment.station ? commitment.station->name : "";
   if (!arguments.study.empty()) {
-    beside.study = arguments.study;
-    beside.design = study::load_study(arguments.study);
-    if (beside.design->name != commitment.study) {
-      throw StudyError(arguments.study.string() + ": is the study " + beside.design->name +
-                       ", and the database is of " + one_line(commitment.study) +
+    study_files.study = arguments.study;
+    study_files.design = study::load_study(arguments.study);
+    if (study_files.design->name != commitment.study) {
+      throw StudyError(arguments.study.string() + ": is the study " + study_files.design->name +
+                       ", but the database belongs to " + one_line(commitment.study) +
                        "; name its study file with --study");
     }
-    take_station_file(pack_place_for(arguments.study, {}).station(station), commitment, beside);
-    return beside;
+    use_station_file(pack_place_for(arguments.study, {}).station(station), commitment, study_files);
+    return study_files;
   }
   for_each_station_file(arguments.database, [&](const fs::path& file) {
-    if (beside.station_file.empty()) take_station_file(file, commitment, beside);
+    if (study_files.station_file.empty()) use_station_file(file, commitment, study_files);
   });
-  if (beside.station_file.empty()) {
-    take_simulated_key(arguments.database, commitment, beside);
+  if (study_files.station_file.empty()) {
+    use_simulated_key(arguments.database, commitment, study_files);
   } else {
-    take_study_of_station(station, beside);
+    use_study_of_station(station, study_files);
   }
-  return beside;
+  return study_files;
 }
 
-/// Without a database: the named study, or that of the only station's file.
-FilesBeside files_before(const StatusArguments& arguments) {
-  FilesBeside beside;
+/// Finds the files before a database exists: those of the named study, or of the only station.
+StatusFiles find_files_without_database(const StatusArguments& arguments) {
+  StatusFiles study_files;
   if (!arguments.study.empty()) {
-    beside.study = arguments.study;
-    beside.design = study::load_study(arguments.study);
-    return beside;
+    study_files.study = arguments.study;
+    study_files.design = study::load_study(arguments.study);
+    return study_files;
   }
   std::set<fs::path> files;
   for_each_station_file(arguments.database, [&](const fs::path& file) {
     files.insert(fs::weakly_canonical(file));
-    beside.station_file = file;
+    study_files.station_file = file;
   });
   if (files.size() != 1) return {};
   std::string station = study::kOnlyStation;
   try {
-    if (!study::is_protected(beside.station_file)) {
-      beside.station = study::load_station_key(beside.station_file).station;
-      station = beside.station->name;
+    if (!study::is_protected(study_files.station_file)) {
+      study_files.station = study::load_station_key(study_files.station_file).station;
+      station = study_files.station->name;
     }
   } catch (const Error&) {
     return {};  // damaged; `run` reports that
   }
-  take_study_of_station(station, beside);
-  return beside;
+  use_study_of_station(station, study_files);
+  return study_files;
 }
 
-analysis::StatusSources sources_for(const StatusArguments& arguments, const FilesBeside& beside) {
+analysis::StatusSources sources_for(const StatusArguments& arguments,
+                                    const StatusFiles& study_files) {
   analysis::StatusSources sources;
   sources.consents = consents_beside(arguments.database);
-  sources.knows_consents = !sources.consents.empty();
-  sources.station = beside.station;
-  if (!beside.design) return sources;
-  sources.planned = beside.design->registration.participants;
-  sources.consent_version = beside.design->session.consent_version;
+  sources.has_consents = !sources.consents.empty();
+  sources.station = study_files.station;
+  if (!study_files.design) return sources;
+  sources.planned = study_files.design->registration.participants;
+  sources.consent_version = study_files.design->session.consent_version;
   return sources;
 }
 
-/// Sentences on the balance of stations and enrolment numbers. A station's own numbers need not
-/// begin at 1.
+/// Sentences on the balance of stations and enrolment numbers; none for a single station of
+/// several, whose numbers need not start at 1.
 std::vector<std::string> balance_of(const record::StudyStore& store) {
   const record::StudyCommitment& commitment = store.commitment();
   if (commitment.station && commitment.station->name != study::kOnlyStation) return {};
@@ -189,39 +190,39 @@ struct NextSession {
   std::string participant;
   int visit = 1;
   bool is_open = false;
-  std::string from{};  ///< earliest time, as text; empty: now
+  std::string earliest{};  ///< earliest time, as text; empty: now
 };
 
 /// Whether the planned number of participants has been reached, so that no new one is due.
-bool all_planned_present(const analysis::StudyStatus& status) {
+bool has_all_planned(const analysis::StudyStatus& status) {
   std::set<std::string> participants;
-  for (const analysis::PersonStatus& one : status.people) {
+  for (const analysis::PersonStatus& person : status.people) {
     const bool is_planned =
-        one.state == "complete" || one.state == "open" || one.state == "stopped";
-    if (is_planned) participants.insert(one.participant);
+        person.state == "complete" || person.state == "open" || person.state == "stopped";
+    if (is_planned) participants.insert(person.participant);
   }
   return status.planned > 0 && static_cast<int>(participants.size()) >= status.planned;
 }
 
-/// The next participant: that of an open session, one who has consented or replaces another, one
-/// whose next visit is due, or a new id.
+/// The next session, in this order: an open one, one of a participant who has consented or replaces
+/// another, a visit that is due, or one of a new participant.
 std::optional<NextSession> next_session(const analysis::StudyStatus& status) {
-  std::vector<std::string> known;
-  for (const analysis::PersonStatus& one : status.people) {
-    if (one.can_resume || one.state == "to come") {
-      return NextSession{one.participant, one.visit, one.can_resume};
+  std::vector<std::string> ids;
+  for (const analysis::PersonStatus& person : status.people) {
+    if (person.can_resume || person.state == "to come") {
+      return NextSession{person.participant, person.visit, person.can_resume};
     }
-    if (!one.participant.empty()) known.push_back(one.participant);
+    if (!person.participant.empty()) ids.push_back(person.participant);
   }
   if (!status.upcoming_visits.empty()) {
     const analysis::UpcomingVisit& visit = status.upcoming_visits.front();
     const bool is_due = visit.is_due(utc_now());
-    if (is_due || all_planned_present(status)) {
+    if (is_due || has_all_planned(status)) {
       return NextSession{visit.participant, visit.visit, false,
                          is_due ? "" : utc_words(*visit.from)};
     }
   }
-  const std::optional<std::string> id = next_id(known);
+  const std::optional<std::string> id = next_id(ids);
   if (!id) return std::nullopt;
   return NextSession{*id};
 }
@@ -240,17 +241,18 @@ DatabaseWords database_words(const record::StudyStore& store) {
   return words;
 }
 
-std::string run_line(const StatusArguments& arguments, const FilesBeside& beside,
+std::string run_line(const StatusArguments& arguments, const StatusFiles& study_files,
                      const DatabaseWords& words, const NextSession& next, bool pilot) {
-  const std::string study = beside.study.empty() ? "STUDY" : shell_word(beside.study.string());
+  const std::string study =
+      study_files.study.empty() ? "STUDY" : shell_word(study_files.study.string());
   std::string line = "touchtrial run " + study + " --participant " + shell_word(next.participant) +
                      " --db " + shell_word(arguments.database.string());
   const bool is_default =
-      beside.study.empty() || beside.station_file.empty() ||
-      beside.station_file.lexically_normal() ==
-          pack_place_for(beside.study, {}).station(words.station).lexically_normal();
+      study_files.study.empty() || study_files.station_file.empty() ||
+      study_files.station_file.lexically_normal() ==
+          pack_place_for(study_files.study, {}).station(words.station).lexically_normal();
   if (!is_default) {
-    line += " --station-file " + shell_word(beside.station_file.string());
+    line += " --station-file " + shell_word(study_files.station_file.string());
   } else if (words.station != study::kOnlyStation) {
     line += " --station " + shell_word(words.station);
   }
@@ -264,71 +266,72 @@ std::string next_session_text(const NextSession& next) {
   const std::string visit =
       next.visit > 1 ? "visit " + std::to_string(next.visit) : std::string("session");
   return (next.is_open ? "resume the " : "") + visit + " of " + next.participant +
-         (next.from.empty() ? "" : ", from " + next.from);
+         (next.earliest.empty() ? "" : ", from " + next.earliest);
 }
 
-/// Empty if sessions are recorded elsewhere, are simulated, or are over.
+/// Empty if sessions are recorded elsewhere or simulated, or if collection is closed.
 std::vector<analysis::NextCommand> next_commands(const StatusArguments& arguments,
-                                                 const FilesBeside& beside,
+                                                 const StatusFiles& study_files,
                                                  const DatabaseWords& words,
                                                  const analysis::StudyStatus& status) {
-  const bool records = status.stations == 0 && !status.state.closed && !status.simulated;
-  if (!records) return {};
+  const bool is_recording = status.stations == 0 && !status.state.closed && !status.simulated;
+  if (!is_recording) return {};
   const std::optional<NextSession> session = next_session(status);
   if (!session) return {};
   const std::string& id = session->participant;
   const bool has_consented =
-      std::ranges::any_of(status.people, [&](const analysis::PersonStatus& one) {
-        return one.participant == id && !one.consent.empty();
+      std::ranges::any_of(status.people, [&](const analysis::PersonStatus& person) {
+        return person.participant == id && !person.consent.empty();
       });
   std::vector<analysis::NextCommand> next;
   if (!has_consented) {
-    const std::string version = beside.design && !beside.design->session.consent_version.empty()
-                                    ? beside.design->session.consent_version
-                                    : "VERSION";
+    const std::string version =
+        study_files.design && !study_files.design->session.consent_version.empty()
+            ? study_files.design->session.consent_version
+            : "VERSION";
     next.push_back({"consent of " + id, "touchtrial consent " +
                                             shell_word(arguments.database.string()) +
                                             " --participant " + shell_word(id) + " --version " +
                                             shell_word(version) + " --details -"});
   }
-  next.push_back(
-      {next_session_text(*session), run_line(arguments, beside, words, *session, status.pilot)});
+  next.push_back({next_session_text(*session),
+                  run_line(arguments, study_files, words, *session, status.pilot)});
   return next;
 }
 
-void print_status(const StatusArguments& arguments, const FilesBeside& beside,
+void print_status(const StatusArguments& arguments, const StatusFiles& study_files,
                   const DatabaseWords& words, const analysis::StudyStatus& status) {
-  const auto next = next_commands(arguments, beside, words, status);
+  const auto next = next_commands(arguments, study_files, words, status);
   print(arguments.json ? analysis::status_json(status, next) : analysis::status_text(status, next));
 }
 
-/// Before the first session: the consents so far, and the first command line.
-int show_before(const StatusArguments& arguments) {
-  const FilesBeside beside = files_before(arguments);
-  const analysis::StatusSources sources = sources_for(arguments, beside);
-  if (!beside.design && sources.consents.empty()) {
+/// Shows the consents and the first command line before the first session.
+int show_status_without_database(const StatusArguments& arguments) {
+  const StatusFiles study_files = find_files_without_database(arguments);
+  const analysis::StatusSources sources = sources_for(arguments, study_files);
+  if (!study_files.design && sources.consents.empty()) {
     throw StoreError(one_line(arguments.database.string()) +
-                     ": there is neither such a database nor a consent or a study beside it; check "
+                     ": does not exist, and neither a consent nor a study is beside it; check "
                      "the name, or name the study file with --study");
   }
   DatabaseWords words;
-  if (beside.station) words.station = beside.station->name;
-  print_status(
-      arguments, beside, words,
-      analysis::status_before(beside.design ? beside.design->name : "",
-                              beside.design ? beside.design->protocol_name() : "", sources));
+  if (study_files.station) words.station = study_files.station->name;
+  print_status(arguments, study_files, words,
+               analysis::status_before(
+                   study_files.design ? study_files.design->name : "",
+                   study_files.design ? study_files.design->protocol_name() : "", sources));
   return 0;
 }
 
 int show_status(const StatusArguments& arguments) {
-  if (!is_there(arguments.database)) return show_before(arguments);
+  if (!path_exists(arguments.database)) return show_status_without_database(arguments);
   const record::StudyStore store =
       record::StudyStore::open(arguments.database, record::StudyStore::Access::read_only);
-  const FilesBeside beside = files_beside(arguments, store.commitment());
-  analysis::StudyStatus status = analysis::status_of(store, sources_for(arguments, beside));
+  const StatusFiles study_files = find_files(arguments, store.commitment());
+  analysis::StudyStatus status = analysis::status_of(store, sources_for(arguments, study_files));
   status.balance = balance_of(store);
   status.head_fault = analysis::check_heads(store, arguments.database).fault();
-  print_status(arguments, beside, database_words(store), status);
+  print_status(arguments, study_files, database_words(store), status);
   return status.head_fault.empty() ? 0 : kNotVerified;
 }
 
@@ -340,9 +343,9 @@ void add_status_command(CLI::App& program, Action& action) {
       "Finished and open sessions, remaining work, and the command for the next participant",
       show_status);
   add_database_argument(command, arguments.database);
-  command.add_option("--study", arguments.study,
-                     "Study file (default: the one of the station's file beside the database or "
-                     "here)");
+  command.add_option(
+      "--study", arguments.study,
+      "Study file (default: that of the station's file beside the database or here)");
   add_json_flag(command, arguments.json);
 }
 

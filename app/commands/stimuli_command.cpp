@@ -1,6 +1,6 @@
 // stimuli: pictures for studies, which the program generates or imports from photographs.
 #include "app/commands/commands.hpp"
-#include "app/commands/given_pictures.hpp"
+#include "app/commands/input_pictures.hpp"
 #include "app/terminal/console.hpp"
 #include "core/errors.hpp"
 #include "core/text.hpp"
@@ -31,11 +31,11 @@ struct GenerateArguments {
 int generate(const GenerateArguments& arguments) {
   const stimuli::StimulusManifest manifest = stimuli::generate_default_stimuli(
       arguments.folder, arguments.choice, progress_bar("generating"));
-  std::string written;
+  std::string paths;
   for (const stimuli::StimulusEntry& entry : manifest.entries) {
-    written += (arguments.folder / entry.file).string() + "\n";
+    paths += (arguments.folder / entry.file).string() + "\n";
   }
-  print(written + (arguments.folder / stimuli::kStimulusManifestFile).string() + "\n");
+  print(paths + (arguments.folder / stimuli::kStimulusManifestFile).string() + "\n");
   return 0;
 }
 
@@ -54,7 +54,7 @@ struct ImportArguments {
 };
 
 /// Parses a number, or the word "file" for the resolution stated in the photographs.
-void take_resolution(const std::string& text, stimuli::ImportOptions& options) {
+void parse_resolution(const std::string& text, stimuli::ImportOptions& options) {
   if (text.empty()) return;
   if (text == "file") {
     options.pixels_per_mm_of_files = true;
@@ -73,14 +73,14 @@ std::string summary_json(const stimuli::ImportReport& report) {
                                     {"classes", nlohmann::ordered_json::array()},
                                     {"ignored", report.ignored},
                                     {"warnings", report.warnings}};
-  for (const stimuli::ImportedClass& one : report.classes) {
-    summary["classes"].push_back({{"label", one.label},
-                                  {"photographs", one.photographs},
-                                  {"crops", one.crops},
-                                  {"overlapping", one.overlapping},
-                                  {"feature_mm", one.feature_mm},
-                                  {"mean_grey", one.mean_grey},
-                                  {"rms_grey", one.rms_grey}});
+  for (const stimuli::ImportedClass& texture_class : report.classes) {
+    summary["classes"].push_back({{"label", texture_class.label},
+                                  {"photographs", texture_class.photographs},
+                                  {"crops", texture_class.crops},
+                                  {"overlapping", texture_class.overlapping},
+                                  {"feature_mm", texture_class.feature_mm},
+                                  {"mean_grey", texture_class.mean_grey},
+                                  {"rms_grey", texture_class.rms_grey}});
   }
   return json_text(summary);
 }
@@ -89,13 +89,14 @@ std::string summary_text(const stimuli::ImportReport& report,
                          const stimuli::ImportOptions& options) {
   std::string text = fmt::format("{:<20} {:>11} {:>6} {:>11} {:>10} {:>9}\n", "class",
                                  "photographs", "crops", "features mm", "mean grey", "rms grey");
-  for (const stimuli::ImportedClass& one : report.classes) {
-    text += fmt::format("{:<20} {:>11} {:>6} {:>11.2f} {:>10.1f} {:>9.1f}\n", one.label,
-                        one.photographs, one.crops, one.feature_mm, one.mean_grey, one.rms_grey);
+  for (const stimuli::ImportedClass& texture_class : report.classes) {
+    text += fmt::format("{:<20} {:>11} {:>6} {:>11.2f} {:>10.1f} {:>9.1f}\n", texture_class.label,
+                        texture_class.photographs, texture_class.crops, texture_class.feature_mm,
+                        texture_class.mean_grey, texture_class.rms_grey);
   }
   if (options.equalise != stimuli::LevelEqualising::none) text += "levels   before equalising\n";
   return text +
-         fmt::format("plane    {:g} x {:g} mm, {:g} mm a pixel{}\nlicence  {}\n",
+         fmt::format("plane    {:g} x {:g} mm, {:g} mm per pixel{}\nlicence  {}\n",
                      options.size_px * options.pitch_mm, options.size_px * options.pitch_mm,
                      options.pitch_mm,
                      options.pixels_per_mm || options.pixels_per_mm_of_files
@@ -105,12 +106,12 @@ std::string summary_text(const stimuli::ImportReport& report,
          fmt::format("pictures {}\nstudy    {}\n", report.pictures.string(), report.study.string());
 }
 
-int import_with(ImportArguments arguments) {
-  take_resolution(arguments.pixels_per_mm, arguments.options);
+int run_import(ImportArguments arguments) {
+  parse_resolution(arguments.pixels_per_mm, arguments.options);
   arguments.options.equalise = kEqualisings.at(arguments.equalise);
   arguments.options.protocol = arguments.protocol;
   arguments.options.methods = study::find_protocol(arguments.protocol)->min_methods;
-  const stimuli::ImportReport report = naming_faults(
+  const stimuli::ImportReport report = with_faults_printed(
       [&] { return stimuli::import_photographs(arguments.options, progress_bar("importing")); });
   if (!arguments.json) {
     for (const std::string& warning : report.warnings) spdlog::warn("{}", warning);
@@ -163,7 +164,7 @@ void add_import_command(CLI::App& stimuli, Action& action) {
       ->check(CLI::IsMember(protocols_of_new_studies()))
       ->capture_default_str();
   add_json_flag(*command, arguments->json);
-  command->callback([=, &action] { action = [=] { return import_with(*arguments); }; });
+  command->callback([=, &action] { action = [=] { return run_import(*arguments); }; });
 }
 
 void add_generate_command(CLI::App& stimuli, Action& action) {

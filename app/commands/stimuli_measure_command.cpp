@@ -1,4 +1,4 @@
-// stimuli measure: statistics of pictures.
+// stimuli measure: computes statistics of pictures.
 #include "analysis/measures/picture_set.hpp"
 #include "app/commands/commands.hpp"
 #include "app/terminal/console.hpp"
@@ -79,7 +79,7 @@ std::vector<fs::path> sorted_entries(const fs::path& folder) {
 /// Adds the pictures of a folder: each subfolder is a class, and each picture directly in it is a
 /// class.
 void add_folder(MeasureJob& job, const fs::path& folder, const std::string& set) {
-  const std::size_t before = job.pictures.size();
+  const std::size_t previous_count = job.pictures.size();
   for (const fs::path& entry : sorted_entries(folder)) {
     if (is_folder(entry)) {
       for (const fs::path& file : sorted_entries(entry)) {
@@ -89,13 +89,13 @@ void add_folder(MeasureJob& job, const fs::path& folder, const std::string& set)
       add_picture(job, set, entry.stem().string(), entry);
     }
   }
-  if (job.pictures.size() == before) {
+  if (job.pictures.size() == previous_count) {
     throw FileError(one_line(folder.string()) +
                     ": contains no picture; give a folder of photographs");
   }
 }
 
-MeasureJob job_of(const MeasureArguments& arguments) {
+MeasureJob read_inputs(const MeasureArguments& arguments) {
   MeasureJob job;
   for (const fs::path& input : arguments.inputs) {
     if (is_folder(input)) {
@@ -118,7 +118,7 @@ void refuse_too_small(const analysis::LabelledPicture& picture) {
 }
 
 int measure(const MeasureArguments& arguments) {
-  const MeasureJob job = job_of(arguments);
+  const MeasureJob job = read_inputs(arguments);
   for (const analysis::LabelledPicture& picture : job.pictures) refuse_too_small(picture);
   engine::ExtractionOptions method;
   engine::RenderingOptions rendering;
@@ -126,9 +126,9 @@ int measure(const MeasureArguments& arguments) {
     method = job.rules->methods.front();
     rendering = job.rules->rendering;
   }
-  const analysis::MeasuredPictures measured =
+  const analysis::MeasuredPictures measures =
       analysis::measure_pictures(job.pictures, method, rendering, progress_bar("measuring"));
-  print(arguments.json ? analysis::measures_json(measured) : analysis::measures_text(measured));
+  print(arguments.json ? analysis::measures_json(measures) : analysis::measures_text(measures));
   return 0;
 }
 

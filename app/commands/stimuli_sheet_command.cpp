@@ -1,4 +1,4 @@
-// stimuli sheet: a contact sheet of a prepared study.
+// stimuli sheet: draws a contact sheet of a prepared study.
 #include "analysis/planning/level_report.hpp"
 #include "analysis/sheet/stimulus_sheet.hpp"
 #include "app/commands/commands.hpp"
@@ -25,18 +25,18 @@ struct SheetArguments {
   fs::path pack;
 };
 
-study::StudyKey key_of(const study::Study& study, const fs::path& path) {
-  if (!is_there(path)) {
+study::StudyKey load_sheet_key(const study::Study& study, const fs::path& path) {
+  if (!path_exists(path)) {
     throw FileError(one_line(path.string()) +
-                    ": there is no key, which a sheet needs; run touchtrial prepare, or name the "
-                    "key with --key");
+                    ": the key does not exist, and a sheet needs it; run touchtrial prepare, or "
+                    "name the key with --key");
   }
-  const study::StudyKey stored = study::load_study_key(path);
+  const study::StudyKey stored_key = study::load_study_key(path);
   // Pictures are located from the study file, because the key may be elsewhere, for instance on a
   // USB stick.
-  study::StudyKey key = study::rekeyed(stored, study);
-  if (key.seal != stored.seal) {
-    throw VerificationError(study::mismatch_of(study, stored, path, "--key"));
+  study::StudyKey key = study::rekeyed(stored_key, study);
+  if (key.seal != stored_key.seal) {
+    throw VerificationError(study::mismatch_of(study, stored_key, path, "--key"));
   }
   return key;
 }
@@ -50,8 +50,8 @@ int draw_sheet(const SheetArguments& arguments) {
     throw UsageError("stimuli sheet: " + one_line(arguments.output.string()) +
                      ": a sheet is HTML; give a name that ends in .html");
   }
-  require_output_place(arguments.output);
-  study::StudyKey key = key_of(study, key_path);
+  require_output_path(arguments.output);
+  study::StudyKey key = load_sheet_key(study, key_path);
   study::check_images_exist(key.study);
   key.pack_folder = place.pack;
   analysis::Document sheet =
@@ -60,7 +60,7 @@ int draw_sheet(const SheetArguments& arguments) {
   sheet.colophon = "Made by the command touchtrial stimuli sheet.";
   write_output(arguments.output, analysis::page_html(sheet), FileMode::owner_only);
   print("sheet " + arguments.output.string() +
-        " (it unblinds everybody who reads it; keep it with the key)\n");
+        " (it unblinds everyone who reads it; keep it with the key)\n");
   return 0;
 }
 

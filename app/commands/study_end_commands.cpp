@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The participants whose sessions are open and could be continued; may be empty.
-std::string left_open(const record::StudyStore& store) {
+std::string open_participants(const record::StudyStore& store) {
   std::string participants;
   for (const record::SessionRow& row : store.sessions()) {
     if (!row.can_resume()) continue;
@@ -39,23 +39,24 @@ struct CloseArguments {
 
 int close(const CloseArguments& arguments) {
   const fs::path& database = arguments.database;
-  record::StudyStore store = opened_to_record(database, arguments.files);
-  const std::string open = left_open(store);
+  record::StudyStore store = open_for_recording(database, arguments.files);
+  const std::string open_ids = open_participants(store);
   if (!store.state().closed) {
-    confirm(fmt::format("{}: accepts no further session, permanently; it has {}{}",
-                        database.string(), store.sessions().size(),
-                        open.empty() ? ", and none is open"
+    confirm(
+        fmt::format("{}: will never accept another session; it has {}{}", database.string(),
+                    store.sessions().size(),
+                    open_ids.empty() ? ", and none is open"
                                      : ", and those of these participants are open and cannot be "
                                        "continued: " +
-                                           open),
-            arguments.yes);
+                                           open_ids),
+        arguments.yes);
   }
   store.close_study(utc_now());
-  if (!open.empty()) {
+  if (!open_ids.empty()) {
     spdlog::warn("{}", one_line(database.string() +
                                 ": the sessions of these participants are open, and can no longer "
                                 "be continued: " +
-                                open));
+                                open_ids));
   }
   print(database.string() + ": collection is closed\n");
   print_head(store, database);
@@ -79,58 +80,59 @@ bool is_registered_look(const record::StudyStore& store, const UnblindArguments&
   const study::StudyKey key = key_of_database(store, arguments.database, arguments.files.key);
   const auto& analysis = key.study.registration.analysis;
   if (!analysis || analysis->looks.empty()) return false;
-  const analysis::LookRecord looked = analysis::look_record(store, key);
-  if (looked.may_look) return true;
-  std::vector<std::string> registered;
-  for (const int look : analysis->looks) registered.push_back(std::to_string(look));
-  const std::string why =
+  const analysis::LookRecord looks = analysis::look_record(store, key);
+  if (looks.may_look) return true;
+  std::vector<std::string> registered_looks;
+  for (const int look : analysis->looks) registered_looks.push_back(std::to_string(look));
+  const std::string reason =
       key.stations.size() > 1
-          ? "a study of several stations has no registered looks, because one at a merged file "
-            "would not be in the next merge"
-          : counted(looked.participants, "participant") +
-                (looked.participants == 1 ? " is" : " are") + " complete, and the registered " +
-                (registered.size() == 1 ? "look is at " : "looks are at ") +
-                listed(registered, " and ");
-  throw StoreError(one_line(arguments.database.string() + ": " + why +
+          ? "a study of several stations has no registered looks, because a look at a merged "
+            "file would not be in the next merge"
+          : counted(looks.participants, "participant") +
+                (looks.participants == 1 ? " is" : " are") + " complete, and the registered " +
+                (registered_looks.size() == 1 ? "look is at " : "looks are at ") +
+                listed(registered_looks, " and ");
+  throw StoreError(one_line(arguments.database.string() + ": " + reason +
                             "; wait, or look at everything with --unregistered, which the report "
                             "lists as a departure from the plan"));
 }
 
-/// \param registered  the look shows only the registered question
+/// \param is_registered  the look shows only the registered question
 /// \throws StoreError if the last look was of the same kind, and shows the same sessions
 void refuse_same_look(const record::StudyStore& store, const UnblindArguments& arguments,
-                      bool registered) {
+                      bool is_registered) {
   const record::StudyState state = store.state();
-  const std::optional<std::set<int>>& last = registered ? state.question : state.interim;
-  if (!arguments.interim || state.closed || !last) return;
-  std::set<int> ended;
+  const std::optional<std::set<int>>& last_look = is_registered ? state.question : state.interim;
+  if (!arguments.interim || state.closed || !last_look) return;
+  std::set<int> ended_sessions;
   for (const record::SessionRow& row : store.sessions()) {
-    if (row.state != record::SessionState::open) ended.insert(row.session);
+    if (row.state != record::SessionState::open) ended_sessions.insert(row.session);
   }
-  if (ended != *last) return;
+  if (ended_sessions != *last_look) return;
   throw StoreError(
       one_line(arguments.database.string() +
                ": nothing has been collected since the last look, which shows every session that "
                "has ended; `touchtrial report` shows it again, and no other look is recorded"));
 }
 
-/// Asks before outcomes are shown, because that cannot be undone. The store refuses forbidden
-/// looks.
-/// \param registered  the look shows only the registered question
+/// Asks for confirmation before outcomes are shown, because that cannot be undone. The store
+/// refuses forbidden looks.
+/// \param is_registered  the look shows only the registered question
 void confirm_look(const record::StudyStore& store, const UnblindArguments& arguments,
-                  bool registered) {
-  const bool one = !arguments.participant.empty();
-  if (!one && store.state().closed == arguments.interim) return;
-  const std::string who = one ? "participant " + arguments.participant
-                          : arguments.interim
-                              ? "every session that has ended"
-                              : fmt::format("all {} sessions", store.sessions().size());
-  const std::string what =
-      registered ? "the answer to the registered question, from " : "the outcomes of ";
-  const std::string when = !one && arguments.interim ? ", while collection continues" : "";
-  confirm(arguments.database.string() + ": this lets " + what + who + " be seen" + when +
+                  bool is_registered) {
+  const bool is_single = !arguments.participant.empty();
+  if (!is_single && store.state().closed == arguments.interim) return;
+  const std::string scope = is_single ? "participant " + arguments.participant
+                            : arguments.interim
+                                ? "every session that has ended"
+                                : fmt::format("all {} sessions", store.sessions().size());
+  const std::string content =
+      is_registered ? "the answer to the registered question, from " : "the outcomes of ";
+  const std::string condition =
+      !is_single && arguments.interim ? ", while collection continues" : "";
+  confirm(arguments.database.string() + ": this reveals " + content + scope + condition +
               "; it is recorded and cannot be undone; anyone who sees them is no longer blind, and "
-              "later exclusions say that outcomes had been seen",
+              "later exclusions state that outcomes had been seen",
           arguments.yes);
 }
 
@@ -142,9 +144,9 @@ int unblind(const UnblindArguments& arguments) {
                   {.key = key_path_for(arguments.database, arguments.files.key),
                    .station = {},
                    .accept_loss = arguments.files.accept_loss});
-  const bool registered = arguments.participant.empty() && is_registered_look(store, arguments);
-  refuse_same_look(store, arguments, registered);
-  confirm_look(store, arguments, registered);
+  const bool is_registered = arguments.participant.empty() && is_registered_look(store, arguments);
+  refuse_same_look(store, arguments, is_registered);
+  confirm_look(store, arguments, is_registered);
   if (!arguments.participant.empty()) {
     store.look_at(arguments.participant, utc_now(), arguments.reason);
     print(arguments.database.string() + ": the look at participant " + arguments.participant +
@@ -154,7 +156,7 @@ int unblind(const UnblindArguments& arguments) {
     return 0;
   }
   const std::string database = arguments.database.string();
-  if (registered) {
+  if (is_registered) {
     store.look_at_question(utc_now(), arguments.reason);
     print(database +
           ": unblinded for a registered look; `touchtrial report` shows the answer to the "
@@ -179,7 +181,7 @@ void add_unblind_command(CLI::App& program, Action& action) {
   const auto [command, arguments] = add_command(
       program, action, "unblind", "Record a look at the outcomes; report then shows them", unblind);
   add_database_argument(command, arguments.database);
-  command.add_option("--reason", arguments.reason, "Why; recorded")->required();
+  command.add_option("--reason", arguments.reason, "The reason, which is recorded")->required();
   CLI::Option* interim = command.add_flag("--interim", arguments.interim,
                                           "Look at finished sessions before collection is closed; "
                                           "at a registered look, only at the registered question");

@@ -33,46 +33,46 @@
 namespace touchtrial::app {
 
 std::filesystem::path key_path_for(const std::filesystem::path& database,
-                                   const std::filesystem::path& given) {
-  if (!given.empty()) return given;
-  std::filesystem::path beside = database;
-  beside += ".key";
-  return beside;
+                                   const std::filesystem::path& explicit_path) {
+  if (!explicit_path.empty()) return explicit_path;
+  std::filesystem::path key = database;
+  key += ".key";
+  return key;
 }
 
 namespace {
 
-/// File of the keys' paths by database; empty without a home folder.
-std::filesystem::path memory_path() {
+/// The file that stores the path of each database's key; empty without a home folder.
+std::filesystem::path remembered_keys_path() {
   const std::filesystem::path settings = device::default_device_settings_path();
   return settings.empty() ? settings : settings.parent_path() / "keys.json";
 }
 
 std::string absolute_name(const std::filesystem::path& file) {
-  std::error_code none;
-  const std::filesystem::path whole = std::filesystem::weakly_canonical(file, none);
-  return whole.empty() ? file.string() : whole.string();
+  std::error_code ignored;
+  const std::filesystem::path canonical = std::filesystem::weakly_canonical(file, ignored);
+  return canonical.empty() ? file.string() : canonical.string();
 }
 
-/// Damaged entries are ignored.
+/// Returns no entries if the file is damaged.
 nlohmann::json remembered_keys() {
   constexpr std::uintmax_t kMaxFileBytes = 1U << 20U;
-  const std::filesystem::path path = memory_path();
-  if (path.empty() || !is_there(path)) return nlohmann::json::object();
+  const std::filesystem::path path = remembered_keys_path();
+  if (path.empty() || !path_exists(path)) return nlohmann::json::object();
   nlohmann::json keys =
       nlohmann::json::parse(text_of(read_file(path, kMaxFileBytes)), nullptr, false);
   return keys.is_object() ? keys : nlohmann::json::object();
 }
 
-/// Without a writable home, as of a service, paths are not stored.
-void keep_place_of_key(const std::filesystem::path& database, const std::filesystem::path& key) {
-  const std::filesystem::path path = memory_path();
-  const std::string place = absolute_name(database);
-  const std::string key_place = absolute_name(key);
+/// Stores the key's path, unless there is no writable home folder, for instance for a service.
+void remember_key(const std::filesystem::path& database, const std::filesystem::path& key) {
+  const std::filesystem::path path = remembered_keys_path();
+  const std::string database_name = absolute_name(database);
+  const std::string key_name = absolute_name(key);
   try {
     nlohmann::json keys = remembered_keys();
-    if (path.empty() || keys.value(place, "") == key_place) return;
-    keys[place] = key_place;
+    if (path.empty() || keys.value(database_name, "") == key_name) return;
+    keys[database_name] = key_name;
     std::filesystem::create_directories(path.parent_path());
     replace_file(path, json_text(keys), FileMode::owner_only);
   } catch (const FileError&) {
@@ -86,41 +86,42 @@ void keep_place_of_key(const std::filesystem::path& database, const std::filesys
 std::filesystem::path remembered_key(const std::filesystem::path& database) {
   try {
     const nlohmann::json keys = remembered_keys();
-    const auto known = keys.find(absolute_name(database));
-    if (known == keys.end() || !known->is_string()) return {};
-    return known->get<std::string>();
+    const auto entry = keys.find(absolute_name(database));
+    if (entry == keys.end() || !entry->is_string()) return {};
+    return entry->get<std::string>();
   } catch (const FileError&) {
     return {};
   }
 }
 
 std::filesystem::path key_in_use(const std::filesystem::path& database,
-                                 const std::filesystem::path& given) {
-  std::filesystem::path path = key_path_for(database, given);
-  if (path != key_path_for(database, {}) || is_there(path)) return path;
-  std::filesystem::path remembered = remembered_key(database);
-  return !remembered.empty() && is_there(remembered) ? remembered : path;
+                                 const std::filesystem::path& explicit_path) {
+  std::filesystem::path path = key_path_for(database, explicit_path);
+  if (path != key_path_for(database, {}) || path_exists(path)) return path;
+  std::filesystem::path remembered_path = remembered_key(database);
+  return !remembered_path.empty() && path_exists(remembered_path) ? remembered_path : path;
 }
 
 study::StudyKey key_of_database(const record::StudyStore& store,
                                 const std::filesystem::path& database,
-                                const std::filesystem::path& given) {
-  const std::filesystem::path path = key_in_use(database, given);
+                                const std::filesystem::path& explicit_path) {
+  const std::filesystem::path path = key_in_use(database, explicit_path);
   const bool is_beside = path == key_path_for(database, {});
-  if (is_beside && !is_there(path)) {
-    const std::filesystem::path last = remembered_key(database);
-    throw FileError(path.string() + ": there is no key beside the database" +
-                    (last.empty() ? "" : ", and none at " + last.string() + " as last time") +
-                    "; name it with --key");
+  if (is_beside && !path_exists(path)) {
+    const std::filesystem::path last_key = remembered_key(database);
+    throw FileError(
+        path.string() + ": there is no key beside the database" +
+        (last_key.empty() ? "" : ", and none at " + last_key.string() + ", which was used last") +
+        "; name it with --key");
   }
   study::StudyKey key = study::load_study_key(path);
   try {
     analysis::require_key_of(store, key);
-  } catch (const VerificationError& wrong) {
+  } catch (const VerificationError& mismatch) {
     throw VerificationError(path.string() + ": is not the key of " +
-                            one_line(database.filename().string()) + ": " + wrong.what());
+                            one_line(database.filename().string()) + ": " + mismatch.what());
   }
-  if (!is_beside) keep_place_of_key(database, path);
+  if (!is_beside) remember_key(database, path);
   key.pack_folder = study::find_pack(key, database);
   return key;
 }
@@ -128,13 +129,13 @@ study::StudyKey key_of_database(const record::StudyStore& store,
 analysis::Outcomes outcomes_of(const record::StudyStore& store, const study::StudyKey& key,
                                const std::string& participant) {
   analysis::Outcomes outcomes = analysis::load_outcomes(store, key, participant);
-  outcomes.asked = questionnaires_of(outcomes.design);
+  outcomes.questionnaires = questionnaires_of(outcomes.design);
   return outcomes;
 }
 
 std::vector<record::PersonalRecord> consents_beside(const std::filesystem::path& database) {
   const std::filesystem::path path = record::personal_data_path(database);
-  if (!is_there(path)) return {};
+  if (!path_exists(path)) return {};
   return record::PersonalData(path).all();
 }
 
@@ -144,31 +145,31 @@ std::string blind_words(const record::StudyState& state) {
 
 namespace {
 
-/// Whether a protected file's clear part names another station than the database's.
-bool is_of_other_station(const std::filesystem::path& file,
-                         const record::StudyCommitment& commitment) {
-  const std::optional<PublicKey> signer = study::signer_in_clear(file);
+/// Whether the unencrypted part of a protected file names another station than the database's.
+bool belongs_to_other_station(const std::filesystem::path& file,
+                              const record::StudyCommitment& commitment) {
+  const std::optional<PublicKey> signer = study::unencrypted_signer(file);
   return signer && commitment.station && *signer != commitment.station->key;
 }
 
 /// The file of the database's station in one of the folders; empty if there is none.
-/// \param damaged  gets why files could not be read
+/// \param read_errors  receives the reasons why files could not be read
 std::optional<study::StationKey> station_key_in(std::span<const std::filesystem::path> folders,
                                                 const record::StudyCommitment& commitment,
-                                                std::string& damaged) {
+                                                std::string& read_errors) {
   if (!commitment.station) return std::nullopt;
   for (const std::filesystem::path& folder : folders) {
     std::error_code ignored;
     for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
       if (entry.path().extension() != ".station") continue;
       try {
-        if (is_of_other_station(entry.path(), commitment)) continue;
+        if (belongs_to_other_station(entry.path(), commitment)) continue;
         study::StationKey key = study::load_station_key(entry.path());
         if (key.signer().public_half() == commitment.station->key) return key;
       } catch (const UsageError&) {
         throw;  // the passphrase prompt was cancelled
       } catch (const Error& error) {
-        damaged += std::string("; ") + error.what();
+        read_errors += std::string("; ") + error.what();
       }
     }
   }
@@ -181,7 +182,7 @@ Signer signer_for(const record::StudyStore& store, const std::filesystem::path& 
   if (!files.station.empty()) {
     return station_key_for(store.commitment(), database, files.station).signer();
   }
-  if (!files.key.empty() || is_there(key_path_for(database, {}))) {
+  if (!files.key.empty() || path_exists(key_path_for(database, {}))) {
     return key_of_database(store, database, files.key).signer();
   }
   std::vector<std::filesystem::path> folders = {"."};
@@ -190,19 +191,20 @@ Signer signer_for(const record::StudyStore& store, const std::filesystem::path& 
       !std::filesystem::equivalent(database.parent_path(), ".", ignored)) {
     folders.insert(folders.begin(), database.parent_path());
   }
-  std::string damaged;
-  if (const auto key = station_key_in(folders, store.commitment(), damaged)) {
+  std::string read_errors;
+  if (const auto key = station_key_in(folders, store.commitment(), read_errors)) {
     return key->signer();
   }
-  if (const std::filesystem::path last = remembered_key(database);
-      !last.empty() && is_there(last)) {
-    return key_of_database(store, database, last).signer();
+  if (const std::filesystem::path last_key = remembered_key(database);
+      !last_key.empty() && path_exists(last_key)) {
+    return key_of_database(store, database, last_key).signer();
   }
-  throw StoreError(one_line(database.string()) +
-                   ": what is recorded is signed, and neither the database's folder nor this one "
-                   "has its station's file; name it with --station-file, or the investigator's key "
-                   "with --key" +
-                   one_line(damaged));
+  throw StoreError(
+      one_line(database.string()) +
+      ": records must be signed, and neither the database's folder nor this one "
+      "contains its station's file; name it with --station-file, or the investigator's key "
+      "with --key" +
+      one_line(read_errors));
 }
 
 }  // namespace
@@ -210,10 +212,10 @@ Signer signer_for(const record::StudyStore& store, const std::filesystem::path& 
 study::StationKey station_key_for(const record::StudyCommitment& commitment,
                                   const std::filesystem::path& database,
                                   const std::filesystem::path& file) {
-  if (is_of_other_station(file, commitment)) {
+  if (belongs_to_other_station(file, commitment)) {
     throw StoreError(one_line(file.string() + ": is not the file of station " +
-                              commitment.station->name + ", whose database " + database.string() +
-                              " is; give that station's file with --station-file, or another "
+                              commitment.station->name + ", to which " + database.string() +
+                              " belongs; give that station's file with --station-file, or another "
                               "database"));
   }
   return study::load_station_key(file);
@@ -223,11 +225,11 @@ void sign_with_files(record::StudyStore& store, const std::filesystem::path& dat
                      const SigningFiles& files) {
   const Signer signer = signer_for(store, database, files);
   store.sign_with(signer);
-  set_head_writer(store, database, signer, {.accept_loss = files.accept_loss}, HeadUse::if_there);
+  set_head_writer(store, database, signer, {.accept_loss = files.accept_loss}, HeadUse::if_present);
 }
 
-record::StudyStore opened_to_record(const std::filesystem::path& database,
-                                    const SigningFiles& files) {
+record::StudyStore open_for_recording(const std::filesystem::path& database,
+                                      const SigningFiles& files) {
   record::StudyStore store =
       record::StudyStore::open(database, record::StudyStore::Access::read_write);
   sign_with_files(store, database, files);
@@ -235,7 +237,7 @@ record::StudyStore opened_to_record(const std::filesystem::path& database,
 }
 
 void print_head(const record::StudyStore& store, const std::filesystem::path& database) {
-  if (!is_there(record::head_path_for(database))) return;
+  if (!path_exists(record::head_path_for(database))) return;
   print(head_words(store) + "; write it on the day sheet\n");
 }
 
@@ -265,20 +267,21 @@ study::LevelGains level_gains(const study::StudyKey& key) {
   const device::DeviceModel device = simulation::device_of(key.study);
   const simulation::LevelCurve curve = curve_of(key.study, device);
   return [=, &key](std::span<const engine::FieldView> fields) {
-    simulation::LevelledGains found =
+    simulation::GainsAtLevel result =
         simulation::gains_at_level(key, fields, device, curve, cores());
-    return std::pair(std::move(found.gains), std::move(found.remarks));
+    return std::pair(std::move(result.gains), std::move(result.remarks));
   };
 }
 
-/// Levels by the laboratory's pilots, if the study names a readable database of pilots.
-simulation::StimulusLevels by_pilots(simulation::StimulusLevels levels, const study::Study& study) {
+/// Applies the laboratory's pilot thresholds, if the study names a readable database of pilots.
+simulation::StimulusLevels with_pilot_thresholds(simulation::StimulusLevels levels,
+                                                 const study::Study& study) {
   if (!study.level) return levels;
   try {
     const simulation::LevelCurve curve = curve_of(study, simulation::device_of(study));
     if (curve.pilots_db) simulation::apply(curve, levels);
   } catch (const Error& error) {
-    spdlog::warn("levels are by published curves: {}", error.what());
+    spdlog::warn("levels are computed from published curves: {}", error.what());
   }
   return levels;
 }
@@ -289,8 +292,8 @@ int cores() {
   return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 }
 
-study::PrepareReport prepare_here(const study::PackLock& lock, const study::StudyKey& key,
-                                  study::PrepareOptions options) {
+study::PrepareReport prepare_with_progress(const study::PackLock& lock, const study::StudyKey& key,
+                                           study::PrepareOptions options) {
   options.level_gains = level_gains(key);
   return study::prepare_pack(lock, key, progress_bar("preparing"), options);
 }
@@ -299,12 +302,12 @@ void prepare_simulated_pack(const study::StudyKey& key) {
   static_cast<void>(study::plane_of(key.study));
   using Lock = study::PackLock;
   const Lock lock(key.pack_folder, Lock::Use::prepare, Lock::Wait::yes);
-  const study::PrepareReport prepared = prepare_here(lock, key, {.statistics = false});
-  for (const std::string& warning : prepared.warnings) spdlog::warn("{}", warning);
+  const study::PrepareReport report = prepare_with_progress(lock, key, {.statistics = false});
+  for (const std::string& warning : report.warnings) spdlog::warn("{}", warning);
 }
 
 void refuse_other_key(const std::filesystem::path& path, const study::StudyKey& key) {
-  if (is_there(path) && study::load_study_key(path).seal != key.seal) {
+  if (path_exists(path) && study::load_study_key(path).seal != key.seal) {
     throw StoreError(path.string() +
                      ": exists already; give another --db, or move the old file away");
   }
@@ -313,29 +316,29 @@ void refuse_other_key(const std::filesystem::path& path, const study::StudyKey& 
 simulation::StimulusLevels levels_of_pack(const study::StudyCodes& key) {
   const engine::Pack pack(key.pack_folder);
   const session::StimulusSource source(pack, key.study.rendering);
-  return by_pilots(
+  return with_pilot_thresholds(
       simulation::levels_of(key, source, simulation::level_devices(key.study), cores()), key.study);
 }
 
 std::unique_ptr<const analysis::Results> with_levels(
     std::unique_ptr<const analysis::Results> results, const study::StudyKey& key) {
-  if (!is_there(key.pack_folder / "pack.json")) return results;
+  if (!path_exists(key.pack_folder / "pack.json")) return results;
   try {
     simulation::StimulusLevels levels = levels_of_pack(key);
     return planning::with_levels(std::move(results), key.study, std::move(levels));
   } catch (const FileError& error) {
-    spdlog::warn("without the levels of the stimuli: {}", error.what());
+    spdlog::warn("the levels of the stimuli are left out: {}", error.what());
   }
   return results;
 }
 
 simulation::SubjectModel subject_for(const std::filesystem::path& path, const study::Study& study,
-                                     const std::string& on) {
+                                     const std::string& hand_device) {
   simulation::SubjectModel subject =
       path.empty() ? simulation::default_subject() : simulation::load_subject_model(path);
   subject.check_labels(study);
-  if (!on.empty()) {
-    subject.device = device::model_of_device(on);
+  if (!hand_device.empty()) {
+    subject.device = device::model_of_device(hand_device);
   } else if (!study.device.empty()) {
     subject.device = simulation::device_of(study);
   }

@@ -19,19 +19,20 @@
 
 namespace touchtrial::app {
 
-/// The key file of a database: `given`, or `<db>.key` beside it if `given` is empty.
+/// The key file of a database: `explicit_path`, or `<db>.key` beside it if `explicit_path` is
+/// empty.
 [[nodiscard]] std::filesystem::path key_path_for(const std::filesystem::path& database,
-                                                 const std::filesystem::path& given);
+                                                 const std::filesystem::path& explicit_path);
 
-/// The path of the key that was last named for a database file, stored in the user's configuration
+/// The path of the key that was last used for a database, stored in the user's configuration
 /// folder (touchtrial/keys.json, readable only by the user).
 /// \return empty if none is stored
 [[nodiscard]] std::filesystem::path remembered_key(const std::filesystem::path& database);
 
-/// The key that key_of_database loads: that of key_path_for, or, if no key is given or beside the
-/// database, the remembered one if it exists.
+/// The path of the key that key_of_database loads: key_path_for, or, if that is not given and does
+/// not exist, the remembered one.
 [[nodiscard]] std::filesystem::path key_in_use(const std::filesystem::path& database,
-                                               const std::filesystem::path& given);
+                                               const std::filesystem::path& explicit_path);
 
 /// Loads the key at key_in_use, checks that it belongs to the database, and remembers its path. Its
 /// pack_folder is that of study::find_pack.
@@ -40,31 +41,31 @@ namespace touchtrial::app {
 /// \throws VerificationError, naming both files, if the key is not the database's
 [[nodiscard]] study::StudyKey key_of_database(const record::StudyStore& store,
                                               const std::filesystem::path& database,
-                                              const std::filesystem::path& given);
+                                              const std::filesystem::path& explicit_path);
 
 /// analysis::load_outcomes, with the wording of the built-in questions.
 [[nodiscard]] analysis::Outcomes outcomes_of(const record::StudyStore& store,
                                              const study::StudyKey& key,
                                              const std::string& participant = {});
 
-/// Every consent in the personal data beside a database.
+/// All consents in the personal data beside a database.
 /// \throws FileError if others may read the personal data
 /// \throws StoreError if they cannot be read
 [[nodiscard]] std::vector<record::PersonalRecord> consents_beside(
     const std::filesystem::path& database);
 
-/// Why outcomes are not shown: "not unblinded", or that a look shows only one answer.
+/// Why outcomes are not shown: the study is "not unblinded", or only the registered question is.
 [[nodiscard]] std::string blind_words(const record::StudyState& state);
 
-/// Loads the file of a database's station. A protected file of another station is refused before
-/// its passphrase is asked for.
-/// \throws StoreError with the remedy if the file's clear part names another station
+/// Loads the file of a database's station. Refuses a protected file of another station before
+/// asking for its passphrase.
+/// \throws StoreError with the remedy if the file's unencrypted part names another station
 /// \throws FileError as load_station_key
 [[nodiscard]] study::StationKey station_key_for(const record::StudyCommitment& commitment,
                                                 const std::filesystem::path& database,
                                                 const std::filesystem::path& file);
 
-/// The signing files that a user named; empty paths: none.
+/// The signing files from the command line; empty paths: none.
 struct SigningFiles {
   std::filesystem::path key;
   std::filesystem::path station;
@@ -81,12 +82,12 @@ struct SigningFiles {
 void sign_with_files(record::StudyStore& store, const std::filesystem::path& database,
                      const SigningFiles& files);
 
-/// A database opened for writing, with the files that sign.
+/// Opens a database for recording, with sign_with_files.
 /// \throws as StudyStore::open and sign_with_files
-[[nodiscard]] record::StudyStore opened_to_record(const std::filesystem::path& database,
-                                                  const SigningFiles& files);
+[[nodiscard]] record::StudyStore open_for_recording(const std::filesystem::path& database,
+                                                    const SigningFiles& files);
 
-/// Prints the new end of the file's chain after recording, if the database has a head file.
+/// Prints the new head after recording, if the database has a head file.
 void print_head(const record::StudyStore& store, const std::filesystem::path& database);
 
 /// The pack and key of a prepared study.
@@ -106,23 +107,23 @@ void save_station_files(const study::StudyKey& key, const study::PackPlace& plac
 [[nodiscard]] int cores();
 
 /// study::prepare_pack with a progress bar, also for a study that states its level.
-[[nodiscard]] study::PrepareReport prepare_here(const study::PackLock& lock,
-                                                const study::StudyKey& key,
-                                                study::PrepareOptions options);
+[[nodiscard]] study::PrepareReport prepare_with_progress(const study::PackLock& lock,
+                                                         const study::StudyKey& key,
+                                                         study::PrepareOptions options);
 
 /// Completes the key's pack, with a progress bar, and prints the warnings. Waits while another
 /// process prepares the pack.
 /// \throws as plane_of and prepare_pack
 void prepare_simulated_pack(const study::StudyKey& key);
 
-/// The levels of a study's stimuli (docs/perception.md), on its device or else on all built-in
-/// device models, computed on all cores.
+/// The levels of a study's stimuli (docs/perception.md), on its device or, if it names none, on all
+/// built-in device models, computed on all cores.
 /// \throws FileError if the key's pack is missing or lacks a stimulus
 /// \throws StudyError if the study names an unknown device
 [[nodiscard]] simulation::StimulusLevels levels_of_pack(const study::StudyCodes& key);
 
-/// Results with those levels if the key's pack exists; a warning states why they could not be
-/// computed.
+/// Adds those levels to the results if the key's pack exists; a warning states why they could not
+/// be computed.
 /// \throws StudyError as levels_of_pack
 [[nodiscard]] std::unique_ptr<const analysis::Results> with_levels(
     std::unique_ptr<const analysis::Results> results, const study::StudyKey& key);
@@ -133,11 +134,12 @@ void prepare_simulated_pack(const study::StudyKey& key);
 void refuse_other_key(const std::filesystem::path& path, const study::StudyKey& key);
 
 /// \param path  a subject model; empty: the built-in one
-/// \param on  device that it holds, as device::model_of_device; empty: the study's, or ideal
+/// \param hand_device  device of the simulated hand, as device::model_of_device; empty: the study's,
+///   or ideal
 /// \throws as load_subject_model, SubjectModel::check_labels, device::model_of_device and
 ///   simulation::device_of
 [[nodiscard]] simulation::SubjectModel subject_for(const std::filesystem::path& path,
                                                    const study::Study& study,
-                                                   const std::string& on);
+                                                   const std::string& hand_device);
 
 }  // namespace touchtrial::app

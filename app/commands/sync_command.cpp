@@ -26,25 +26,25 @@ struct SyncArguments {
 
 std::string text_of_report(const std::string& file, const merging::SendReport& report,
                            bool dry_run) {
-  std::string text =
-      fmt::format("{}: {} {}, {} there before\n", file, counted(std::ssize(report.sent), "session"),
-                  dry_run ? "to send" : "sent", report.already_there);
+  std::string text = fmt::format("{}: {} {}, {} already there\n", file,
+                                 counted(std::ssize(report.sent), "session"),
+                                 dry_run ? "to send" : "sent", report.already_there);
   if (report.rows_with_erased_keys.empty()) return text;
   return text + fmt::format(
-                    "{}: the server still holds keys of participants who withdrew; the table's "
+                    "{}: the server still contains keys of participants who withdrew; the table's "
                     "owner destroys them with DELETE FROM touchtrial_bundles WHERE bundle IN ({}); "
                     "VACUUM FULL touchtrial_bundles; and its backups and WAL archives\n",
                     file, fmt::join(report.rows_with_erased_keys, ", "));
 }
 
 int sync(const SyncArguments& arguments) {
-  require_head_beside(arguments.database);
+  check_against_heads(arguments.database);
   const merging::Stations stations =
       merging::stations_of_file(arguments.database, record::TraceCheck::full);
   const auto table = merging::open_bundle_table(arguments.server);
   json reports = json::array();
   std::string text =
-      table->shown() + (arguments.dry_run ? " (dry run: nothing was changed)\n" : "\n");
+      table->address() + (arguments.dry_run ? " (dry run: nothing was changed)\n" : "\n");
   for (const auto& station : stations) {
     const merging::SendReport report =
         merging::send_station(*station, *table, arguments.dry_run, progress_bar("send"));
@@ -60,9 +60,9 @@ int sync(const SyncArguments& arguments) {
                        {"left_out", left_out},
                        {"rows_with_erased_keys", report.rows_with_erased_keys}});
   }
-  const json all = {
-      {"server", table->shown()}, {"dry_run", arguments.dry_run}, {"stations", reports}};
-  print(arguments.json ? json_text(all) : text);
+  const json summary = {
+      {"server", table->address()}, {"dry_run", arguments.dry_run}, {"stations", reports}};
+  print(arguments.json ? json_text(summary) : text);
   return 0;
 }
 
@@ -72,7 +72,7 @@ void add_sync_command(CLI::App& program, Action& action) {
   const auto [command, arguments] =
       add_command(program, action, "sync", "Send finished sessions to a PostgreSQL database", sync);
   add_database_argument(command, arguments.database, "Database of the station");
-  const std::string meaning = "postgresql://USER@HOST/DATABASE; ~/.pgpass has the password";
+  const std::string meaning = "postgresql://USER@HOST/DATABASE; ~/.pgpass contains the password";
   command.add_option("SERVER", arguments.server, meaning)->required();
   command.add_flag("--dry-run", arguments.dry_run,
                    "Show what would be sent, without changing anything");

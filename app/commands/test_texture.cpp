@@ -10,16 +10,16 @@
 namespace touchtrial::app {
 namespace {
 
-engine::TextureField bark(int side_px, const engine::RenderingOptions& options) {
+engine::TextureField bark_field(int side_px, const engine::RenderingOptions& options) {
   const GreyImage image = stimuli::generate_stimulus("bark", stimuli::kDefaultStimuliSeed, side_px);
   return engine::make_texture_field(engine::extract_texture<double>(image, {}).texture, options);
 }
 
-engine::RenderingOptions options_below(double max_stiffness_n_per_mm) {
+engine::RenderingOptions limited_options(double max_stiffness_n_per_mm) {
   engine::RenderingOptions options;
   for (double* const stiffness :
        {&options.stiffness_n_per_mm, &options.texture_stiffness_n_per_mm}) {
-    *stiffness = device::within_share(*stiffness, max_stiffness_n_per_mm);
+    *stiffness = device::limit_to_share(*stiffness, max_stiffness_n_per_mm);
   }
   return options;
 }
@@ -27,9 +27,9 @@ engine::RenderingOptions options_below(double max_stiffness_n_per_mm) {
 }  // namespace
 
 TestTexture::TestTexture(int side_px, double max_stiffness_n_per_mm)
-    : options_(options_below(max_stiffness_n_per_mm)), field_(bark(side_px, options_)) {
+    : options_(limited_options(max_stiffness_n_per_mm)), field_(bark_field(side_px, options_)) {
   const std::array fields = {field_.view()};
-  gains_ = engine::choose_gains(fields, options_).of_field.front();
+  gains_ = engine::choose_gains(fields, options_).per_field.front();
 }
 
 engine::RenderingModel TestTexture::texture() const {

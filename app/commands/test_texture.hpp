@@ -12,13 +12,13 @@ namespace touchtrial::app {
 class TestTexture {
  public:
   /// \param side_px  side of the square plane, at the default pitch; >= 16
-  /// \param max_stiffness_n_per_mm  of the device, not exceeded by wall and texture; 0: unknown
+  /// \param max_stiffness_n_per_mm  the device's limit for wall and texture; 0: unknown
   explicit TestTexture(int side_px, double max_stiffness_n_per_mm = 0.0);
 
   [[nodiscard]] PlaneGeometry plane() const noexcept { return field_.view().geometry; }
   /// Models refer to this object, which must outlive them.
   [[nodiscard]] engine::RenderingModel texture() const;
-  /// The same plane without a texture.
+  /// The plane without a texture.
   [[nodiscard]] engine::RenderingModel wall() const;
 
  private:

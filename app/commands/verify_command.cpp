@@ -1,3 +1,4 @@
+// verify: checks that a study's files are consistent.
 #include "analysis/verification/study_files.hpp"
 #include "app/commands/commands.hpp"
 #include "app/commands/study_inputs.hpp"
@@ -17,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kSpokenDigits = 16;
+constexpr std::size_t kShortHeadDigits = 16;
 constexpr std::size_t kHashDigits = 64;
 
 struct VerifyArguments {
@@ -36,7 +37,7 @@ std::string head_of(const VerifyArguments& arguments) {
     if (digit != ' ') head += static_cast<char>(std::tolower(static_cast<unsigned char>(digit)));
   }
   const bool is_hex = head.find_first_not_of("0123456789abcdef") == std::string::npos;
-  const bool is_long_enough = head.size() >= kSpokenDigits && head.size() <= kHashDigits;
+  const bool is_long_enough = head.size() >= kShortHeadDigits && head.size() <= kHashDigits;
   if (head.empty() || (is_hex && is_long_enough)) return head;
   throw UsageError(
       "--head: is not a head; give the 16 digits of a day sheet, or the 64 that verify printed");
@@ -65,12 +66,11 @@ void add_verify_command(CLI::App& program, Action& action) {
   add_database_argument(command, arguments.database);
   add_key_option(command, arguments.key, "Key of the study (default: DB.key, if it exists)");
   command.add_option("--pack", arguments.pack,
-                     "Pack of the study (default: the one that the key names, or one of that "
+                     "Pack of the study (default: the one that the key names, or one of the same "
                      "name beside the database or here)");
   command.add_option("--head", arguments.head,
                      "An earlier head of the file's chain, for instance from a day sheet, which "
-                     "the chain must still "
-                     "contain");
+                     "the chain must still contain");
   command.add_option(
       "--head-file", arguments.heads,
       "Another head file to compare the database with; for a merged database, a station's");

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -21,7 +22,7 @@ namespace {
 
 constexpr std::size_t kHelpColumns = 80;
 constexpr std::size_t kNameColumns = 24;
-/// A longer list of choices is shown in the meaning of an option, not beside its name.
+/// A longer list of choices is shown in the option's description, not beside its name.
 constexpr std::size_t kMaxChoicesBesideName = 40;
 
 /// An option, an argument or a command.
@@ -29,7 +30,7 @@ struct Item {
   std::string name;
   std::string value;  ///< shown after the name; may be empty
   std::string meaning;
-  std::string page{};  ///< of a command: "device-accept"
+  std::string page{};  ///< the page of a command: "device-accept"
 };
 
 struct Section {
@@ -67,13 +68,13 @@ std::string value_of(const CLI::Option& option) {
   const ValueType type(option);
   if (type.is_number()) return "NUMBER";
   if (const std::vector<std::string> choices = choices_of(option); !choices.empty()) {
-    const std::string all = fmt::format("{}", fmt::join(choices, "|"));
-    return all.size() <= kMaxChoicesBesideName ? all : "NAME";
+    const std::string joined = fmt::format("{}", fmt::join(choices, "|"));
+    return joined.size() <= kMaxChoicesBesideName ? joined : "NAME";
   }
   return type.kind == "TEXT" && !type.limit.empty() ? type.limit : type.kind;
 }
 
-/// "From 16 to 4096"; empty without limits.
+/// The limits of a number, for instance "From 16 to 4096"; empty if it has none.
 std::string range_of(const CLI::Option& option) {
   const std::string limit = ValueType(option).limit;
   const std::size_t begin = limit.find(" in [");
@@ -83,17 +84,19 @@ std::string range_of(const CLI::Option& option) {
          limit.substr(dash + 3, limit.size() - dash - 4);
 }
 
-/// In the order in which the command defines them, not that of their addresses.
-std::string names_among(const CLI::App& command, const std::set<CLI::Option*>& some) {
+/// The names of the options in `set`, in the order in which the command defines them.
+std::string names_among(const CLI::App& command, const std::set<CLI::Option*>& set) {
   std::vector<std::string> names;
   for (const CLI::Option* option : options_of(command)) {
-    const bool is_one = std::ranges::any_of(some, [&](const auto* one) { return one == option; });
-    if (is_one) names.push_back(names_of(*option).back());
+    const bool is_member =
+        std::ranges::any_of(set, [&](const auto* member) { return member == option; });
+    if (is_member) names.push_back(names_of(*option).back());
   }
   return listed(names);
 }
 
-/// The meaning of an option, its limits and default, and what it requires and excludes.
+/// The description of an option with its limits, its default, and the options it requires or
+/// excludes.
 std::string meaning_of(const CLI::App& command, const CLI::Option& option) {
   std::string text = option.get_description();
   const auto add = [&text](const std::string& label, const std::string& sentence) {
@@ -106,8 +109,8 @@ std::string meaning_of(const CLI::App& command, const CLI::Option& option) {
   add("Default: ", option.get_default_str());
   add("", may_repeat ? "May be repeated" : "");
   add("", option.get_required() && option.nonpositional() ? "Required" : "");
-  add("Needs ", names_among(command, option.get_needs()));
-  add("Not with ", names_among(command, option.get_excludes()));
+  add("Requires ", names_among(command, option.get_needs()));
+  add("Cannot be used with ", names_among(command, option.get_excludes()));
   return text.ends_with('.') ? text : text + ".";
 }
 
@@ -121,29 +124,31 @@ std::vector<Item> items_of(const CLI::App& command, bool are_arguments) {
   return items;
 }
 
-/// "device-accept" of touchtrial device accept.
+/// "device-accept" for touchtrial device accept.
 std::string page_name(const CLI::App& command) {
-  const std::string words = words_of(command, "-");
+  const std::string words = full_name_of(command, "-");
   return words.substr(words.find('-') + 1);
 }
 
-/// The commands below this one, in their groups.
+/// The subcommands by group.
 std::vector<Section> command_sections(const CLI::App& command) {
   std::vector<Section> sections;
-  for (const CLI::App* below : command.get_subcommands({})) {
-    if (below->get_group().empty()) continue;
-    // The parser's group of commands without a group.
-    const std::string group = below->get_group() == "Subcommands" ? "Commands" : below->get_group();
+  for (const CLI::App* subcommand : command.get_subcommands({})) {
+    if (subcommand->get_group().empty()) continue;
+    // The parser's default group.
+    const std::string group =
+        subcommand->get_group() == "Subcommands" ? "Commands" : subcommand->get_group();
     auto section = std::ranges::find(sections, group, &Section::title);
     if (section == sections.end()) section = sections.insert(sections.end(), Section{group, {}});
-    section->items.push_back({below->get_name(), "", below->get_description(), page_name(*below)});
+    section->items.push_back(
+        {subcommand->get_name(), "", subcommand->get_description(), page_name(*subcommand)});
   }
   return sections;
 }
 
 Page read_page(const CLI::App& command) {
-  Page page{words_of(command), command.get_description(), words_of(command) + " [OPTIONS]",
-            // Subcommands inherit it.
+  Page page{full_name_of(command), command.get_description(), full_name_of(command) + " [OPTIONS]",
+            // Subcommands inherit the footer.
             command.get_parent() == nullptr ? command.get_footer() : "", command_sections(command)};
   for (const CLI::Option* option : options_of(command)) {
     if (option->nonpositional()) continue;
@@ -158,7 +163,7 @@ Page read_page(const CLI::App& command) {
   return page;
 }
 
-/// \name The screen of --help
+/// \name The text of --help
 ///@{
 
 std::string help_item(const Item& item) {
@@ -185,7 +190,7 @@ std::string help(const Page& page) {
 ///@{
 
 /// Escapes text for roff: hyphens that can be copied, no requests.
-std::string in_roff(std::string_view text) {
+std::string roff_text(std::string_view text) {
   std::string safe;
   for (const char c : text) {
     const bool begins_line = safe.empty() || safe.back() == '\n';
@@ -196,39 +201,40 @@ std::string in_roff(std::string_view text) {
   return safe;
 }
 
-std::string in_upper_case(std::string text) {
+std::string upper_case(std::string text) {
   for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   return text;
 }
 
 constexpr const char* kExitStatus =
-    ".SH EXIT STATUS\n.TP\n0\nDone.\n.TP\n1\nFailed; the message says where, and what to do.\n"
+    ".SH EXIT STATUS\n.TP\n0\nDone.\n.TP\n1\nFailed; the message gives the place and the remedy.\n"
     ".TP\n2\nThe arguments or the study file are wrong.\n.TP\n3\nThe data failed verification.\n";
 
 std::string man(const Page& page, const CLI::App& command) {
-  const std::string name = words_of(command, "-");
+  const std::string name = full_name_of(command, "-");
   std::string text = fmt::format(
       ".TH \"{}\" 1 \"\" \"touchtrial {}\" \"User Commands\"\n.SH NAME\n{} \\- {}\n.SH "
       "SYNOPSIS\n\\fB{}\\fR\n",
-      in_roff(in_upper_case(name)), program_version(), in_roff(name), in_roff(page.summary),
-      in_roff(page.synopsis));
-  if (!page.start.empty()) text += ".PP\n.nf\n" + in_roff(page.start) + "\n.fi\n";
+      roff_text(upper_case(name)), program_version(), roff_text(name), roff_text(page.summary),
+      roff_text(page.synopsis));
+  if (!page.start.empty()) text += ".PP\n.nf\n" + roff_text(page.start) + "\n.fi\n";
   for (const Section& section : page.sections) {
-    text += ".SH " + in_upper_case(section.title) + "\n";
+    text += ".SH " + upper_case(section.title) + "\n";
     for (const Item& item : section.items) {
-      text += fmt::format(".TP\n\\fB{}\\fR{}\n{}\n", in_roff(item.name),
-                          item.value.empty() ? "" : " \\fI" + in_roff(item.value) + "\\fR",
-                          in_roff(item.meaning));
+      text += fmt::format(".TP\n\\fB{}\\fR{}\n{}\n", roff_text(item.name),
+                          item.value.empty() ? "" : " \\fI" + roff_text(item.value) + "\\fR",
+                          roff_text(item.meaning));
     }
   }
   text += std::string(kExitStatus) + ".SH SEE ALSO\n";
-  std::vector<const CLI::App*> others = command.get_subcommands({});
-  std::erase_if(others, [](const CLI::App* below) { return below->get_group().empty(); });
-  if (command.get_parent() != nullptr) others.insert(others.begin(), command.get_parent());
+  std::vector<const CLI::App*> related = command.get_subcommands({});
+  std::erase_if(related,
+                [](const CLI::App* subcommand) { return subcommand->get_group().empty(); });
+  if (command.get_parent() != nullptr) related.insert(related.begin(), command.get_parent());
   return text +
-         listed(others, ", ",
+         listed(related, ", ",
                 [](const CLI::App* other) {
-                  return "\\fB" + in_roff(words_of(*other, "-")) + "\\fR(1)";
+                  return "\\fB" + roff_text(full_name_of(*other, "-")) + "\\fR(1)";
                 }) +
          "\n";
 }
@@ -274,28 +280,29 @@ std::string page_of(const CLI::App& command, PageFormat format) {
   return format == PageFormat::man ? man(page, command) : markdown(page);
 }
 
-std::string words_of(const CLI::App& command, const std::string& between) {
-  const CLI::App* const above = command.get_parent();
-  return (above == nullptr ? "" : words_of(*above, between) + between) + command.get_name();
+std::string full_name_of(const CLI::App& command, const std::string& separator) {
+  const CLI::App* const parent = command.get_parent();
+  return (parent == nullptr ? "" : full_name_of(*parent, separator) + separator) +
+         command.get_name();
 }
 
-const CLI::App& command_named(const CLI::App& above, const std::string& name) {
-  const std::vector<const CLI::App*> commands = above.get_subcommands({});
-  const auto found = std::ranges::find(commands, name, &CLI::App::get_name);
-  if (found != commands.end()) return **found;
-  std::vector<std::string_view> known;
-  for (const CLI::App* one : commands) known.emplace_back(one->get_name());
-  const auto nearest = nearest_name(name, known);
+const CLI::App& command_named(const CLI::App& parent, const std::string& name) {
+  const std::vector<const CLI::App*> commands = parent.get_subcommands({});
+  const auto match = std::ranges::find(commands, name, &CLI::App::get_name);
+  if (match != commands.end()) return **match;
+  std::vector<std::string_view> names;
+  for (const CLI::App* command : commands) names.emplace_back(command->get_name());
+  const auto nearest = nearest_name(name, names);
   throw UsageError(one_line(name) + ": is not a command; " +
                    (nearest ? "did you mean " + std::string(*nearest) + "?"
-                            : "see " + words_of(above) + " --help"));
+                            : "see " + full_name_of(parent) + " --help"));
 }
 
 std::vector<const CLI::App*> every_command(const CLI::App& command) {
   std::vector<const CLI::App*> all{&command};
-  for (const CLI::App* below : command.get_subcommands({})) {
-    if (below->get_group().empty()) continue;
-    for (const CLI::App* one : every_command(*below)) all.push_back(one);
+  for (const CLI::App* subcommand : command.get_subcommands({})) {
+    if (subcommand->get_group().empty()) continue;
+    std::ranges::copy(every_command(*subcommand), std::back_inserter(all));
   }
   return all;
 }
@@ -322,7 +329,9 @@ std::vector<std::string> choices_of(const CLI::Option& option) {
   if (!is_set && type.kind.find('|') == std::string::npos) return {};
   std::istringstream all(is_set ? type.limit.substr(1, type.limit.size() - 2) : type.kind);
   std::vector<std::string> choices;
-  for (std::string one; std::getline(all, one, is_set ? ',' : '|');) choices.push_back(one);
+  for (std::string choice; std::getline(all, choice, is_set ? ',' : '|');) {
+    choices.push_back(choice);
+  }
   return choices;
 }
 

@@ -21,18 +21,18 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Time between two live lines. A line that stays in place is easier to read than one that scrolls.
-constexpr std::chrono::nanoseconds kOnTerminal = 250ms;
-constexpr std::chrono::nanoseconds kOnPipe = 1s;
+/// Time between two live lines, which are overwritten on a terminal and scroll elsewhere.
+constexpr std::chrono::nanoseconds kTerminalInterval = 250ms;
+constexpr std::chrono::nanoseconds kPipeInterval = 1s;
 
 /// Time between two polls of keys, signals and the servo.
 constexpr auto kFrameInterval = 16ms;
 
-/// The longest delay of a signal while an answer is typed.
+/// Time between two checks for signals while an answer is typed.
 constexpr int kAnswerPollMs = 100;
 
-/// A held key repeats sooner than this, even the first time (660 ms by default in X).
-constexpr std::chrono::nanoseconds kFreshPress = 1s;
+/// Longer than a held key takes to repeat, even the first time (660 ms by default in X).
+constexpr std::chrono::nanoseconds kFreshPressDelay = 1s;
 
 device::ServoOptions options_for(const device::SafetyLimits& limits, double rate_hz) {
   device::ServoOptions options;
@@ -44,16 +44,16 @@ device::ServoOptions options_for(const device::SafetyLimits& limits, double rate
 
 /// \return nothing if a signal asked the program to end
 /// \throws UsageError at the end of the input
-std::optional<std::string> line_of_input() {
+std::optional<std::string> read_input_line() {
   std::string line;
-  while (!device::StopOnSignals::asked()) {
+  while (!device::StopOnSignals::stop_requested()) {
     pollfd input{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
     if (::poll(&input, 1, kAnswerPollMs) <= 0) continue;
-    // One letter at a time, so that the next line remains for the next question.
+    // Reads one character at a time, so that later lines stay in the input.
     char letter = 0;
-    const ssize_t got = ::read(STDIN_FILENO, &letter, 1);
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) {
+    const ssize_t count = ::read(STDIN_FILENO, &letter, 1);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) {
       throw UsageError("standard input ended; answer every prompt");
     }
     if (letter == '\n') return line;
@@ -71,27 +71,28 @@ std::optional<std::string> attended_answer(const std::string& question) {
   std::fflush(stderr);
   std::chrono::nanoseconds quiet_since = device::monotonic_now();
   bool is_announced = false;
-  while (const std::optional<std::string> line = line_of_input()) {
+  while (const std::optional<std::string> line = read_input_line()) {
     const std::chrono::nanoseconds now = device::monotonic_now();
-    if (!has_keys || !line->empty() || now - quiet_since >= kFreshPress) return line;
+    if (!has_keys || !line->empty() || now - quiet_since >= kFreshPressDelay) return line;
     quiet_since = now;
     if (!is_announced)
-      std::fputs("release Enter, read, and press it again after a second\n", stderr);
+      std::fputs("release Enter, read the question, and press Enter again after a second\n",
+                 stderr);
     is_announced = true;
   }
   return std::nullopt;
 }
 
 AttendedRun::AttendedRun(device::HapticDevice& device, const device::SafetyLimits& limits,
-                         double rate_hz, bool keys)
+                         double rate_hz, bool reads_keys)
     : device_(device),
       options_(options_for(limits, rate_hz)),
       max_force_n_(limits.max_force_n),
       recorder_(kRecordedS, rate_hz),
       watchdog_(device, control_, heartbeat_, device::Watchdog::silence_for(device.info())),
       signals_(device, control_),
-      on_terminal_(::isatty(STDERR_FILENO) != 0) {
-  if (!keys) return;
+      is_on_terminal_(::isatty(STDERR_FILENO) != 0) {
+  if (!reads_keys) return;
   device::StopOnSignals::set_crash_cleanup(TerminalKeys::restore);
   keys_.emplace();
 }
@@ -105,7 +106,7 @@ std::optional<device::ServoReport> AttendedRun::run(const PhaseName& phase,
                                                     device::ForceSource& force,
                                                     device::SampleSink& sink, double seconds,
                                                     const std::function<bool()>& is_done) {
-  if (device::StopOnSignals::asked()) stop_ = AttendedStop::signal;
+  if (device::StopOnSignals::stop_requested()) stop_ = AttendedStop::signal;
   if (stop_ != AttendedStop::none) return std::nullopt;
   options_.limit_ticks = std::llround(seconds * options_.rate_hz);
   recorder_.clear();
@@ -123,15 +124,15 @@ std::optional<device::ServoReport> AttendedRun::run(const PhaseName& phase,
     device::PacedClock clock(device::PacedClock::default_spin(thread_.scheduling().policy));
     report = device::run_servo(device_, force, sink, options_, clock, hooks);
   });
-  while (running.runs()) {
+  while (running.is_running()) {
     std::this_thread::sleep_for(kFrameInterval);
-    take_keys();
+    handle_keys();
     if (is_done && is_done()) control_.finish();
     show(phase);
   }
   running.finish();
-  end_line();
-  // A stop applies to all later runs, but a finished run must not end the next one.
+  clear_live_line();
+  // A stop ends all later runs too, but finish() ends only one.
   if (stop_ == AttendedStop::none) control_.reset();
   return report;
 }
@@ -141,14 +142,15 @@ void AttendedRun::wait_until_ready(double limit_s) {
   if (readiness == device::DeviceReadiness::ready) return;
   const std::string name = device_.info().name;
   const std::string advice = readiness_in_words(readiness);
-  const bool asks = readiness == device::DeviceReadiness::needs_reset;
-  if (asks && !keys_) {
+  const bool needs_confirmation = readiness == device::DeviceReadiness::needs_reset;
+  if (needs_confirmation && !keys_) {
     if (attended_answer(name + ": " + advice + "; then press Enter\n")) device_.calibrate();
   } else {
-    std::fprintf(stderr, "%s: %s%s\n", name.c_str(), advice.c_str(), asks ? "; then press h" : "");
+    std::fprintf(stderr, "%s: %s%s\n", name.c_str(), advice.c_str(),
+                 needs_confirmation ? "; then press h" : "");
   }
-  NoForce nothing;
-  const auto report = run([](std::int64_t) { return "homing"; }, nothing, nothing, limit_s,
+  NoForce no_force;
+  const auto report = run([](std::int64_t) { return "homing"; }, no_force, no_force, limit_s,
                           [&] { return device_.readiness() == device::DeviceReadiness::ready; });
   if (stop_ != AttendedStop::none) return;
   if (report && report->end == device::ServoEnd::fault) {
@@ -168,8 +170,8 @@ std::string AttendedRun::flight_record() const {
   return device::flight_csv(recorder_.ticks());
 }
 
-void AttendedRun::take_keys() {
-  if (device::StopOnSignals::asked()) stop_ = AttendedStop::signal;
+void AttendedRun::handle_keys() {
+  if (device::StopOnSignals::stop_requested()) stop_ = AttendedStop::signal;
   if (!keys_) return;
   for (auto key = keys_->next(); key; key = keys_->next()) {
     if (stop_ != AttendedStop::none) continue;
@@ -181,26 +183,26 @@ void AttendedRun::take_keys() {
       control_.comfort_stop();
     } else if (*key == 'h') {
       device_.calibrate();
-    } else if (chooses_strength_) {
-      take_strength(*key);
+    } else if (has_strength_keys_) {
+      handle_strength_key(*key);
     }
   }
 }
 
-void AttendedRun::take_strength(char key) {
+void AttendedRun::handle_strength_key(char key) {
   if (key != '+' && key != '-') return;
   strength_tenths_ = std::clamp(strength_tenths_ + (key == '+' ? 1 : -1), 1, 10);
   parameters_.set({.force_share = 0.1 * strength_tenths_});
-  end_line();
+  clear_live_line();
   std::fprintf(stderr, "strength %d %%\n", 10 * strength_tenths_);
 }
 
 void AttendedRun::show(const PhaseName& phase) {
   const std::chrono::nanoseconds now = device::monotonic_now();
-  if (now - shown_at_ < (on_terminal_ ? kOnTerminal : kOnPipe)) return;
+  if (now - shown_at_ < (is_on_terminal_ ? kTerminalInterval : kPipeInterval)) return;
   const device::ServoState newest = state_.get();
-  const double passed_s = 1e-9 * static_cast<double>((now - shown_at_).count());
-  const double rate_hz = static_cast<double>(newest.tick - shown_tick_) / passed_s;
+  const double elapsed_s = 1e-9 * static_cast<double>((now - shown_at_).count());
+  const double rate_hz = static_cast<double>(newest.tick - shown_tick_) / elapsed_s;
   const Vec3 p = newest.sample.position_mm;
   const Vec3 f = newest.force_n;
   // Shorter than 80 columns, because a wrapped line cannot be overwritten.
@@ -209,14 +211,14 @@ void AttendedRun::show(const PhaseName& phase) {
       "late",
       phase(newest.tick), static_cast<double>(newest.tick) / options_.rate_hz, p.x, p.y, p.z, f.x,
       f.y, f.z, rate_hz, std::min(newest.lateness_us, 9999.0));
-  std::fprintf(stderr, on_terminal_ ? "\r%s\x1b[K" : "%s\n", line.c_str());
+  std::fprintf(stderr, is_on_terminal_ ? "\r%s\x1b[K" : "%s\n", line.c_str());
   std::fflush(stderr);
   shown_at_ = now;
   shown_tick_ = newest.tick;
 }
 
-void AttendedRun::end_line() {
-  if (on_terminal_) std::fputs("\r\x1b[K", stderr);
+void AttendedRun::clear_live_line() {
+  if (is_on_terminal_) std::fputs("\r\x1b[K", stderr);
 }
 
 }  // namespace touchtrial::app

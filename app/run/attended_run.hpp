@@ -28,13 +28,14 @@ enum class AttendedStop {
 };
 
 /// Asks a question on standard error and reads the answer, one line of standard input. Input typed
-/// at a terminal before the question appeared is discarded. Enter alone counts only after a second
-/// without it, so that a held key does not consent. Later lines remain in the input.
+/// at a terminal before the question appeared is discarded. An empty line counts only if Enter was
+/// not pressed within the last second, so that a held key does not consent. Later lines stay in the
+/// input.
 /// \return nothing if a signal asked the program to end
 /// \throws UsageError at the end of the input
 [[nodiscard]] std::optional<std::string> attended_answer(const std::string& question);
 
-/// Exerts no force and keeps no sample.
+/// Exerts no force and records no sample.
 class NoForce final : public device::ForceSource, public device::SampleSink {
  public:
   [[nodiscard]] Vec3 force_n(const device::DeviceSample& /*sample*/) noexcept override {
@@ -50,14 +51,14 @@ inline constexpr double kReadyLimitS = 120.0;
 class AttendedRun {
  public:
   static constexpr double kRecordedS = 10.0;  ///< length of the flight record
-  /// The name, at most 8 letters, of the phase that a tick belongs to, for the live line.
+  /// The name of a tick's phase for the live line, at most 8 letters.
   using PhaseName = std::function<std::string(std::int64_t tick)>;
 
   /// \param device  must outlive this
   /// \param limits,rate_hz  as ServoOptions
-  /// \param keys  whether q and the space bar are read from standard input
+  /// \param reads_keys  whether q and the space bar are read from standard input
   AttendedRun(device::HapticDevice& device, const device::SafetyLimits& limits, double rate_hz,
-              bool keys = true);
+              bool reads_keys = true);
   ~AttendedRun();
   AttendedRun(const AttendedRun&) = delete;
   AttendedRun& operator=(const AttendedRun&) = delete;
@@ -65,7 +66,7 @@ class AttendedRun {
   /// Runs the servo in real time until it ends. Handles keys, and shows a live line on standard
   /// error. No run starts after a stop.
   /// \param is_done  polled; once it returns true, the force fades and the run ends
-  /// \return nothing if there was a stop before
+  /// \return nothing if an earlier run was stopped
   std::optional<device::ServoReport> run(const PhaseName& phase, device::ForceSource& force,
                                          device::SampleSink& sink, double seconds,
                                          const std::function<bool()>& is_done = {});
@@ -80,8 +81,8 @@ class AttendedRun {
   /// \param max_n  > 0
   void limit_force(double max_n) noexcept;
 
-  /// Lets the keys + and - scale all forces in steps of 10 %, from 10 % to 100 %.
-  void let_choose_strength() noexcept { chooses_strength_ = true; }
+  /// Makes the keys + and - scale all forces in steps of 10 %, from 10 % to 100 %.
+  void enable_strength_keys() noexcept { has_strength_keys_ = true; }
 
   [[nodiscard]] AttendedStop stop() const noexcept { return stop_; }
   [[nodiscard]] const device::SchedulingObtained& scheduling() const noexcept {
@@ -91,14 +92,14 @@ class AttendedRun {
   [[nodiscard]] std::string flight_record() const;
 
  private:
-  void take_keys();
-  void take_strength(char key);
+  void handle_keys();
+  void handle_strength_key(char key);
   void show(const PhaseName& phase);
-  void end_line();
+  void clear_live_line();
 
   device::HapticDevice& device_;
   device::ServoOptions options_;
-  double max_force_n_;  ///< from the constructor's limits
+  double max_force_n_;  ///< the constructor's limit
   device::ServoControl control_;
   device::LatestValue<device::ServoState> state_;
   device::LatestValue<device::ServoParameters> parameters_;
@@ -110,8 +111,8 @@ class AttendedRun {
   device::StopOnSignals signals_;
   std::optional<TerminalKeys> keys_;
   AttendedStop stop_ = AttendedStop::none;
-  bool on_terminal_;
-  bool chooses_strength_ = false;
+  bool is_on_terminal_;
+  bool has_strength_keys_ = false;
   int strength_tenths_ = 10;
   std::int64_t shown_tick_ = 0;
   std::chrono::nanoseconds shown_at_{};

@@ -24,7 +24,7 @@
 namespace touchtrial::app {
 namespace {
 
-/// As in reports.
+/// The age bands of reports.
 constexpr std::array<std::string_view, 8> kAgeBands = {"under 18", "18-19", "20-29", "30-39",
                                                        "40-49",    "50-59", "60-69", "70 or more"};
 constexpr std::array<std::string_view, 2> kHands = {"right", "left"};
@@ -49,7 +49,7 @@ class DialogueTexts {
 
   [[nodiscard]] std::string text(
       const char* key, const std::vector<std::pair<std::string, std::string>>& values = {}) const {
-    return filled(texts_.at("dialogue").at(key), values);
+    return fill_placeholders(texts_.at("dialogue").at(key), values);
   }
   [[nodiscard]] study::Translated translated(const std::string& text) const {
     return {{language_, text}};
@@ -61,14 +61,14 @@ class DialogueTexts {
     for (const std::string& option : options) question.options.push_back(translated(option));
     return question;
   }
-  /// kAgeBands, as displayed.
+  /// The texts of kAgeBands in the study's language.
   [[nodiscard]] std::vector<std::string> ages() const {
     std::vector<std::string> bands(kAgeBands.begin(), kAgeBands.end());
     bands.front() = text("age_under", {{"years", "18"}});
     bands.back() = text("age_from", {{"years", "70"}});
     return bands;
   }
-  /// kHands, as displayed.
+  /// The texts of kHands in the study's language.
   [[nodiscard]] std::vector<std::string> hands() const {
     const auto& words = texts_.at("handedness");
     return {words.at("pen_right"), words.at("pen_left")};
@@ -81,8 +81,8 @@ class DialogueTexts {
 
 /// The chosen option; empty if the question was skipped.
 template <std::size_t count>
-std::string option_in(const std::array<std::string_view, count>& options,
-                      const std::string& answer) {
+std::string chosen_option(const std::array<std::string_view, count>& options,
+                          const std::string& answer) {
   const auto index = number_in<std::size_t>(answer);
   return index ? std::string(options.at(*index)) : std::string();
 }
@@ -93,7 +93,7 @@ ParticipantAnswers ask_participant(const AskQuestions& ask, const ParticipantQue
   const DialogueTexts texts(questions.session);
   const std::string& version = questions.session.consent_version;
   ParticipantAnswers person;
-  person.id = questions.proposed;
+  person.id = questions.proposed_id;
   const std::string consent = version.empty()
                                   ? texts.text("consent")
                                   : texts.text("consent_version", {{"consent", version}});
@@ -115,25 +115,26 @@ ParticipantAnswers ask_participant(const AskQuestions& ask, const ParticipantQue
       {texts.choice("age", texts.text("age"), texts.ages(), false),
        texts.choice("hand", texts.text("hand"), texts.hands(), false)}};
   const std::vector<std::string> answers = ask({&second});
-  person.age_band = option_in(kAgeBands, answers.at(0));
-  person.hand = option_in(kHands, answers.at(1));
+  person.age_band = chosen_option(kAgeBands, answers.at(0));
+  person.hand = chosen_option(kHands, answers.at(1));
   return person;
 }
 
 namespace {
 
 /// \throws UsageError if the window is closed or a signal ends the program
-std::vector<std::string> answers_in(ParticipantWindow& window, const session::QuestionStep& step) {
-  while (!window.end_reason() && EndingSignals::which() == 0) {
-    if (const auto reply = window.attend(step)) return reply->answers;
+std::vector<std::string> wait_for_answers(ParticipantWindow& window,
+                                          const session::QuestionStep& step) {
+  while (!window.end_reason() && EndingSignals::signal_number() == 0) {
+    if (const auto reply = window.show_step(step)) return reply->answers;
   }
-  const std::string stopped = EndingSignals::message();
-  throw UsageError("run: " + (stopped.empty() ? "the window was closed" : stopped) +
-                   " before a participant was chosen; no session began");
+  const std::string signal_message = EndingSignals::message();
+  throw UsageError("run: " + (signal_message.empty() ? "the window was closed" : signal_message) +
+                   " before a participant was chosen; no session was started");
 }
 
-void record(const ParticipantAnswers& person, const RunOptions& options,
-            const std::string& version) {
+void save_consent(const ParticipantAnswers& person, const RunOptions& options,
+                  const std::string& version) {
   record::PersonalRecord consent;
   consent.participant = person.id;
   consent.consent_version = version.empty() ? "not named" : version;
@@ -144,7 +145,7 @@ void record(const ParticipantAnswers& person, const RunOptions& options,
                     person.id, consent.consent_version));
 }
 
-/// "age 20-29, pen in the left hand"; empty if neither was given.
+/// A note such as "age 20-29, pen in the left hand"; empty if neither was given.
 std::string remark_on(const ParticipantAnswers& person) {
   std::string remark;
   if (!person.age_band.empty()) remark = "age " + person.age_band;
@@ -159,72 +160,72 @@ struct KnownPeople {
   std::vector<std::string> ids{};
 
   explicit KnownPeople(const std::filesystem::path& database) : ids(known_ids(database)) {
-    if (!is_there(database)) return;
+    if (!path_exists(database)) return;
     const auto store = record::StudyStore::open(database, record::StudyStore::Access::read_only);
     sessions = store.sessions();
     visits = analysis::upcoming_visits(store);
   }
   [[nodiscard]] const analysis::UpcomingVisit* next_visit(const std::string& id) const {
-    const auto found = std::ranges::find(visits, id, &analysis::UpcomingVisit::participant);
-    return found == visits.end() ? nullptr : &*found;
+    const auto match = std::ranges::find(visits, id, &analysis::UpcomingVisit::participant);
+    return match == visits.end() ? nullptr : &*match;
   }
-  /// Of the participant's last session; 0 if none.
+  /// The visit of the participant's last session; 0 if none.
   [[nodiscard]] int last_visit(const std::string& id) const {
-    int last = 0;
+    int largest_visit = 0;
     for (const record::SessionRow& row : sessions) {
-      if (row.participant == id) last = std::max(last, row.visit);
+      if (row.participant == id) largest_visit = std::max(largest_visit, row.visit);
     }
-    return last;
+    return largest_visit;
   }
 };
 
-/// The number of the session's visit: from the options, else the participant's next, or the one
-/// that is resumed or restarted.
+/// The visit number of the session: from the options, or else the participant's next visit, or the
+/// last one if that is resumed or restarted.
 int visit_of(const RunOptions& options, const KnownPeople& people, const std::string& id) {
   if (options.visit > 1) return options.visit;
   if (const analysis::UpcomingVisit* const next = people.next_visit(id)) return next->visit;
   return std::max(1, people.last_visit(id));
 }
 
-/// The questions of ask_participant, with doubts about an id.
+/// The questions of ask_participant, with the reasons to refuse or question an id.
 ParticipantQuestions questions_for(const RunOptions& options, const study::StationKey& key,
                                    const KnownPeople& people) {
   const DialogueTexts texts(key.study.session);
-  const auto refusal_for =
-      [texts, of = std::to_string(key.study.visits.count)](const analysis::UpcomingVisit& next) {
-        return texts.text(
-            "next_visit",
-            {{"id", next.participant}, {"visit", std::to_string(next.visit)}, {"of", of}});
-      };
+  const auto refusal_for = [texts, visit_count = std::to_string(key.study.visits.count)](
+                               const analysis::UpcomingVisit& next) {
+    return texts.text(
+        "next_visit",
+        {{"id", next.participant}, {"visit", std::to_string(next.visit)}, {"of", visit_count}});
+  };
   ParticipantQuestions questions;
   questions.session = key.study.session;
-  std::string questioned_id;  // the id that was already questioned
+  std::string warned_id;  // the last id with a warning
   if (options.visit == 1 && !people.visits.empty() && people.visits.front().is_due(utc_now())) {
-    questioned_id = people.visits.front().participant;
-    questions.proposed = questioned_id;
+    warned_id = people.visits.front().participant;
+    questions.proposed_id = warned_id;
     questions.note = refusal_for(people.visits.front());
   } else if (options.visit == 1) {
-    questions.proposed = proposed_participant(people.sessions, key.station);
+    questions.proposed_id = proposed_participant(people.sessions, key.station);
   }
   questions.refusal = [&options, &people, texts, refusal_for,
-                       questioned_id](const std::string& id) mutable -> std::string {
+                       warned_id](const std::string& id) mutable -> std::string {
     if (!record::is_participant_id(id)) return texts.text("id_rule");
-    const bool is_mentioned = std::exchange(questioned_id, id) == id;
+    const bool already_warned = std::exchange(warned_id, id) == id;
     if (const analysis::UpcomingVisit* const next = people.next_visit(id)) {
       if (options.visit > 1) return "";
       // A mistyped id must not become another participant's next visit.
-      if (next->is_due(utc_now())) return is_mentioned ? "" : refusal_for(*next);
+      if (next->is_due(utc_now())) return already_warned ? "" : refusal_for(*next);
       return texts.text(
           "too_early",
           {{"id", id}, {"visit", std::to_string(next->visit)}, {"time", utc_words(*next->from)}});
     }
     if (people.last_visit(id) > 0) {
-      const bool may_be = options.visit > 1 || options.on_existing != OnExisting::refuse;
-      return may_be ? "" : texts.text("has_session", {{"id", id}});
+      const bool is_allowed = options.visit > 1 || options.on_existing != OnExisting::refuse;
+      return is_allowed ? "" : texts.text("has_session", {{"id", id}});
     }
-    const auto meant = likely_id(id, people.ids);
-    if (!meant || is_mentioned) return "";
-    return texts.text("looks_like", {{"known", *meant}, {"id", id}});
+    const auto similar_id = likely_id(id, people.ids);
+    if (!similar_id || already_warned) return "";
+    return texts.text("looks_like", {{"known", *similar_id}, {"id", id}});
   };
   return questions;
 }
@@ -235,30 +236,32 @@ RunOptions with_participant(const RunOptions& options, const study::StationKey& 
   const KnownPeople people(options.database);
   const ParticipantQuestions questions = questions_for(options, key, people);
   const std::string& version = key.study.session.consent_version;
-  ParticipantWindowOptions wanted;
-  wanted.monitor = options.console_monitor > 0 ? options.console_monitor : options.monitor;
-  wanted.size_px = options.window_px;
-  wanted.session.language = key.study.session.language;
-  wanted.session.texts = key.study.session.texts;
-  ParticipantWindow window(wanted);
+  ParticipantWindowOptions dialogue_options;
+  dialogue_options.monitor =
+      options.console_monitor > 0 ? options.console_monitor : options.monitor;
+  dialogue_options.size_px = options.window_px;
+  dialogue_options.session.language = key.study.session.language;
+  dialogue_options.session.texts = key.study.session.texts;
+  ParticipantWindow window(dialogue_options);
   ParticipantAnswers person;
   run_beside(window, [&] {
     person = ask_participant(
-        [&](const session::QuestionStep& step) { return answers_in(window, step); }, questions);
+        [&](const session::QuestionStep& step) { return wait_for_answers(window, step); },
+        questions);
   });
   if (person.has_consented) {
-    record(person, options, version);
+    save_consent(person, options, version);
   } else if (!version.empty()) {
     throw UsageError(fmt::format(
-        "run: participant {} has not signed the consent form, version {}; no session began",
+        "run: participant {} has not signed the consent form, version {}; no session was started",
         person.id, version));
   }
-  RunOptions known = options;
-  known.participant = person.id;
-  known.visit = visit_of(options, people, person.id);
-  known.remark = remark_on(person);
-  known.no_consent = !person.has_consented;
-  return known;
+  RunOptions result = options;
+  result.participant = person.id;
+  result.visit = visit_of(options, people, person.id);
+  result.remark = remark_on(person);
+  result.no_consent = !person.has_consented;
+  return result;
 }
 
 }  // namespace touchtrial::app

@@ -23,8 +23,8 @@ namespace touchtrial::app {
 
 struct ParticipantQuestions {
   study::SessionPlan session{};  ///< the study's: language, texts and version of the form
-  std::string proposed{};        ///< id; may be empty
-  std::string note{};            ///< on the proposed id, as a sentence; may be empty
+  std::string proposed_id{};     ///< id; may be empty
+  std::string note{};            ///< a sentence about the proposed id; may be empty
   /// Why a participant with this id is refused, as a sentence; empty: accepted.
   std::function<std::string(const std::string& id)> refusal;
 };
@@ -33,14 +33,14 @@ struct ParticipantAnswers {
   std::string id;
   bool has_consented = false;
   std::string age_band{};  ///< for instance "20-29", in English; empty: not given
-  std::string hand{};      ///< that holds the pen, "right" or "left"; empty: not given
+  std::string hand{};      ///< the pen hand, "right" or "left"; empty: not given
 };
 
-/// Shows questions until there are answers, in the format of StepReply.
+/// Shows questions and returns the answers in the format of StepReply.
 using AskQuestions = std::function<std::vector<std::string>(const session::QuestionStep&)>;
 
-/// Asks for id and consent, again while the id is refused; then, after consent, for age and hand.
-/// In the study's language, because the participant may read along.
+/// Asks for id and consent until the id is accepted; then, after consent, for age and hand. Uses
+/// the study's language, because the participant may read along.
 [[nodiscard]] ParticipantAnswers ask_participant(const AskQuestions& ask,
                                                  const ParticipantQuestions& questions);
 

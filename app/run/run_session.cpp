@@ -55,8 +55,9 @@ namespace {
 std::map<std::string, GreyImage> answer_pictures(const study::Study& study) {
   std::map<std::string, GreyImage> pictures;
   const auto add = [&](const std::vector<study::StudyClass>& classes) {
-    for (const study::StudyClass& shown : classes) {
-      pictures.emplace(shown.label, engine::read_grey_image(study.folder / shown.images.front()));
+    for (const study::StudyClass& texture : classes) {
+      pictures.emplace(texture.label,
+                       engine::read_grey_image(study.folder / texture.images.front()));
     }
   };
   add(study.classes);
@@ -80,7 +81,7 @@ ParticipantWindowOptions window_options(const RunOptions& options, const study::
   window.pitch_mm = study.rendering.pitch_mm;
   window.has_several_methods = study.presented_methods() > 1;
   window.min_touch = study.trials.answer_after;
-  window.ask = study::ask_of(study);
+  window.trial_question = study::trial_question_of(study);
   window.stiffness_n_per_mm = study.rendering.stiffness_n_per_mm;
   return window;
 }
@@ -94,19 +95,19 @@ std::string window_end_reason(const ParticipantWindow& window) {
                                           : "the participant's monitor was unplugged";
 }
 
-/// While another program locks the database: shows why the session waits.
+/// Called while another program locks the database: shows why the session waits.
 /// \return whether to continue waiting
-bool waits(const std::string& why, const std::function<void()>& show) {
-  spdlog::warn("{}; the session waits", why);
+bool show_wait_reason(const std::string& reason, const std::function<void()>& show) {
+  spdlog::warn("{}; the session waits", reason);
   show();
-  return EndingSignals::which() == 0;
+  return EndingSignals::signal_number() == 0;
 }
 
 /// The record of a wait for a locked database.
-std::optional<session::ExperimenterRequest> wait_to_record(PatientSink& sink) {
-  const auto waited = sink.take_delay();
-  if (!waited) return std::nullopt;
-  const double seconds = std::chrono::duration<double>(*waited).count();
+std::optional<session::ExperimenterRequest> wait_entry(PatientSink& sink) {
+  const auto wait_time = sink.take_delay();
+  if (!wait_time) return std::nullopt;
+  const double seconds = std::chrono::duration<double>(*wait_time).count();
   return session::ExperimenterRequest{session::ExperimenterRequest::Kind::delay,
                                       fmt::format("waited {:.1f} s for the database", seconds),
                                       "database-locked"};
@@ -121,15 +122,15 @@ class FocusWatch {
   [[nodiscard]] std::optional<session::ExperimenterRequest> request() {
     using Kind = session::ExperimenterRequest::Kind;
     constexpr std::chrono::milliseconds kFocusTimeout{500};
-    const std::chrono::milliseconds lost = window_.out_of_reach();
-    if (window_.take_out_of_reach() && !std::exchange(is_recorded_, true)) {
-      return session::ExperimenterRequest{Kind::deviation, kWhat, "focus-lost"};
+    const std::chrono::milliseconds unfocused = window_.time_without_focus();
+    if (window_.take_focus_loss() && !std::exchange(is_recorded_, true)) {
+      return session::ExperimenterRequest{Kind::deviation, kFocusLost, "focus-lost"};
     }
     const bool is_in_trial = window_.is_exploring() || window_.is_answering();
-    if (lost >= kFocusTimeout && is_in_trial && !std::exchange(has_paused_, true)) {
-      return session::ExperimenterRequest{Kind::pause, kWhat, ""};
+    if (unfocused >= kFocusTimeout && is_in_trial && !std::exchange(has_paused_, true)) {
+      return session::ExperimenterRequest{Kind::pause, kFocusLost, ""};
     }
-    if (lost > std::chrono::milliseconds{}) return std::nullopt;
+    if (unfocused > std::chrono::milliseconds{}) return std::nullopt;
     is_recorded_ = false;
     if (!std::exchange(has_paused_, false)) return std::nullopt;
     return session::ExperimenterRequest{Kind::resume, "", ""};
@@ -137,49 +138,49 @@ class FocusWatch {
 
   /// SessionStatus::alert.
   [[nodiscard]] std::string alert() const {
-    constexpr std::chrono::seconds kAlarming{1};
-    if (window_.out_of_reach() < kAlarming) return "";
+    constexpr std::chrono::seconds kAlertDelay{1};
+    if (window_.time_without_focus() < kAlertDelay) return "";
     return "another window has the keyboard; click on the participant's window";
   }
 
  private:
-  static constexpr const char* kWhat = "another window had the keyboard during a trial";
+  static constexpr const char* kFocusLost = "another window had the keyboard during a trial";
 
   ParticipantWindow& window_;
   bool is_recorded_ = false;
   bool has_paused_ = false;
 };
 
-/// A visual device makes no sound that would need masking.
+/// The masking plan; a visual device makes no sound that would need masking.
 study::MaskingPlan masking_of(const study::Study& study, const device::DeviceInfo& device) {
   study::MaskingPlan plan = study.session.masking;
   plan.wanted = plan.wanted && !device.visual;
   return plan;
 }
 
-/// Deviations that are known before the session begins, and notes on the participant.
-std::vector<session::ExperimenterRequest> known_deviations(const RunOptions& options,
-                                                           const RunStudy& study,
-                                                           const SessionDevice& device) {
-  std::vector<session::ExperimenterRequest> known = device.to_record();
+/// Deviations that exist before the session starts, and notes about the participant.
+std::vector<session::ExperimenterRequest> initial_entries(const RunOptions& options,
+                                                          const RunStudy& study,
+                                                          const SessionDevice& device) {
+  std::vector<session::ExperimenterRequest> entries = device.record_entries();
   if (!options.remark.empty()) {
-    known.push_back({session::ExperimenterRequest::Kind::note, options.remark, ""});
+    entries.push_back({session::ExperimenterRequest::Kind::note, options.remark, ""});
   }
   if (options.no_consent) {
-    spdlog::warn("participant {} has not signed the consent form; the record says so",
+    spdlog::warn("participant {} has not signed the consent form; this is recorded",
                  options.participant);
-    known.push_back({session::ExperimenterRequest::Kind::deviation,
-                     "answered so in the dialogue at the start", "no-consent"});
+    entries.push_back({session::ExperimenterRequest::Kind::deviation,
+                       "stated in the dialogue at the start", "no-consent"});
   }
-  if (!study.key_in_reach.empty()) {
-    known.push_back({session::ExperimenterRequest::Kind::deviation,
-                     "the investigator's key lies beside the study", "key-at-station"});
+  if (!study.reachable_key.empty()) {
+    entries.push_back({session::ExperimenterRequest::Kind::deviation,
+                       "the investigator's key is beside the study", "key-at-station"});
   }
   if (study.key.study.session.masking.wanted && !options.sound && !device.info().visual) {
-    known.push_back(
+    entries.push_back(
         {session::ExperimenterRequest::Kind::deviation, "--no-sound", "no-masking-noise"});
   }
-  return known;
+  return entries;
 }
 
 /// Notes on the participant's screen settings, for the session's record.
@@ -193,12 +194,12 @@ std::vector<session::ExperimenterRequest> notes_on_screens(const RunOptions& opt
     spdlog::warn("{}", draft);
     note(draft);
   }
-  if (options.text_scale) note("size of the letters: " + number_text(*options.text_scale));
+  if (options.text_scale) note("text size: " + number_text(*options.text_scale));
   if (options.high_contrast) note("high contrast");
   return notes;
 }
 
-/// A visual device needs no warm-up, no curtain and no headphones.
+/// The session's texts, without a day sheet for a visual device, which needs no preparation.
 session::SessionTexts texts_for(const study::Study& study, const device::DeviceInfo& device) {
   session::SessionTexts texts = session_texts(study);
   if (device.visual) texts.day_sheet.clear();
@@ -208,16 +209,16 @@ session::SessionTexts texts_for(const study::Study& study, const device::DeviceI
 void require_blind(const RunOptions& options, const device::DeviceInfo& device) {
   if (!device.visual || options.pilot) return;
   throw UsageError("run: device '" + device.name +
-                   "' is seen on a screen and not felt, which is not blind; give --pilot and a "
-                   "pilot's database, or choose a device that is felt");
+                   "' shows textures on a screen, so the session is not blind; give --pilot and "
+                   "a pilot's database, or choose a haptic device");
 }
 
-/// Without a known screen size, the true size of pictures is unknown.
+/// Warns if the screen's size, and thus the true size of pictures, is unknown.
 void warn_of_unknown_size(const RunOptions& options, const study::Study& study,
                           const ParticipantWindow& window) {
   if (study.session.sight == study::Sight::blindfold || window.screen().is_known) return;
-  const study::Ask ask = study::ask_of(study);
-  if (!ask.has_pictures() && ask.scales().empty()) return;
+  const study::TrialQuestion question = study::trial_question_of(study);
+  if (!question.has_pictures() && question.scales().empty()) return;
   spdlog::warn(
       "window: the size of this screen and of the pictures is unknown; measure it once "
       "with `touchtrial screen calibrate{}`",
@@ -251,9 +252,9 @@ void require_consent(const RunOptions& options, const device::DeviceInfo& device
 }
 
 /// A person's session with a device and a window.
-class PersonsSession {
+class PersonSession {
  public:
-  PersonsSession(const RunOptions& options, const RunStudy& study)
+  PersonSession(const RunOptions& options, const RunStudy& study)
       : options_(options),
         study_(study),
         database_(options, study),
@@ -268,31 +269,31 @@ class PersonsSession {
     warn_of_stiffness(study.key.study.rendering, device_.info());
     if (options.sound) {
       sound_.emplace(masking_of(study.key.study, device_.info()), study.key.study.seed);
-      if (!sound_->trouble().empty()) spdlog::warn("{}", sound_->trouble());
+      if (!sound_->failure_reason().empty()) spdlog::warn("{}", sound_->failure_reason());
     }
-    for (const session::ExperimenterRequest& known : known_deviations(options, study, device_)) {
-      desk_.add(known);
+    for (const session::ExperimenterRequest& entry : initial_entries(options, study, device_)) {
+      desk_.add(entry);
     }
     for (const auto& note : notes_on_screens(options, study.key.study)) desk_.add(note);
   }
 
   int run() {
-    ParticipantWindowOptions wanted = window_options(options_, study_.key.study);
-    wanted.device = [this]() -> device::HapticDevice& { return device_.device(); };
-    wanted.pointer = device_.pointer();
-    if (sound_) wanted.cues = &*sound_;
-    if (options_.console) wanted.console = &desk_;
-    if (options_.console_monitor > 0) wanted.console_monitor = options_.console_monitor;
-    ParticipantWindow window(wanted);
+    ParticipantWindowOptions window_settings = window_options(options_, study_.key.study);
+    window_settings.device = [this]() -> device::HapticDevice& { return device_.device(); };
+    window_settings.pointer = device_.pointer();
+    if (sound_) window_settings.cues = &*sound_;
+    if (options_.console) window_settings.console = &desk_;
+    if (options_.console_monitor > 0) window_settings.console_monitor = options_.console_monitor;
+    ParticipantWindow window(window_settings);
     warn_of_unknown_size(options_, study_.key.study, window);
     screen_ = record_of(window.screen());
     int code = 1;
-    run_beside(window, [&] { code = run_before(window); });
+    run_beside(window, [&] { code = run_with_window(window); });
     return code;
   }
 
  private:
-  int run_before(ParticipantWindow& window) {
+  int run_with_window(ParticipantWindow& window) {
     session::RealTimeExplorer explorer;
     const EnteredSession entered =
         enter_session(options_, study_, database_, [&](record::SessionOpening& opening) {
@@ -300,32 +301,33 @@ class PersonsSession {
                                     device::kServoRateHz, device_.certificate());
           opening.station->screen = screen_;
         });
-    if (!study_.key_in_reach.empty()) {
+    if (!study_.reachable_key.empty()) {
       spdlog::warn(
-          "{}: the investigator's key lies at this station, which is recorded as a deviation; move "
+          "{}: the investigator's key is at this station, which is recorded as a deviation; move "
           "it to another medium",
-          study_.key_in_reach.string());
+          study_.reachable_key.string());
     }
     session::SteadySessionClock clock(entered.clock);
-    SpokenAnswers spoken(window, desk_);
+    SpokenAnswers spoken_answers(window, desk_);
     DatabaseWatch watch(options_.database);
     FocusWatch focus(window);
     RunExperimenter experimenter(
         desk_,
         [&] {
-          const std::string trouble = watch.trouble();
-          return trouble.empty() ? window_end_reason(window) : trouble;
+          const std::string problem = watch.problem();
+          return problem.empty() ? window_end_reason(window) : problem;
         },
-        [&] { return recorded_by_itself(*entered.sink, focus); }, [&] { return focus.alert(); });
-    entered.sink->set_waiting([&](const std::string& why) {
-      return waits(why, [&] { static_cast<void>(spoken.attend(session::PauseStep{})); });
+        [&] { return automatic_request(*entered.sink, focus); }, [&] { return focus.alert(); });
+    entered.sink->set_wait_callback([&](const std::string& reason) {
+      return show_wait_reason(
+          reason, [&] { static_cast<void>(spoken_answers.show_step(session::PauseStep{})); });
     });
     const session::SessionTexts texts = texts_for(study_.key.study, device_.info());
     const session::SessionTally tally = session::run_session(
         *entered.session,
         {.key = study_.key,
          .source = source_,
-         .participant = spoken,
+         .participant = spoken_answers,
          .clock = clock,
          .explorer = explorer,
          .devices = device_.station(),
@@ -334,19 +336,20 @@ class PersonsSession {
          .practice =
              [&](int round) { return study::practice_of(study_.key.study, entered.draw, round); },
          .participant_name = options_.participant,
-         .device_name = device_.shown_name(),
+         .device_name = device_.display_name(),
          .limits = device_.limits(),
          .instruments = instruments_.get()});
     terminal_.end_line();
-    return conclude_session(options_, entered.number, tally, database_.made(), watch.trouble());
+    return conclude_session(options_, entered.number, tally, database_.open_or_create(),
+                            watch.problem());
   }
 
-  /// The program's own records (sound, window, database), one request at a time.
-  [[nodiscard]] std::optional<session::ExperimenterRequest> recorded_by_itself(PatientSink& sink,
-                                                                               FocusWatch& focus) {
-    if (auto request = wait_to_record(sink)) return request;
+  /// The program's own requests (database, window, sound), one at a time.
+  [[nodiscard]] std::optional<session::ExperimenterRequest> automatic_request(PatientSink& sink,
+                                                                              FocusWatch& focus) {
+    if (auto request = wait_entry(sink)) return request;
     if (auto request = focus.request()) return request;
-    return sound_ ? sound_->to_record() : std::nullopt;
+    return sound_ ? sound_->next_record_entry() : std::nullopt;
   }
 
   const RunOptions& options_;
@@ -361,7 +364,7 @@ class PersonsSession {
   std::optional<SessionSound> sound_;  ///< empty with --no-sound
 };
 
-/// Time in a simulated participant's session is virtual unless the options ask for real time.
+/// A simulated participant's time is virtual unless the options request real time.
 std::unique_ptr<session::Explorer> explorer_for(const RunOptions& options) {
   if (options.real_time) return std::make_unique<session::RealTimeExplorer>();
   return std::make_unique<session::VirtualExplorer>();
@@ -370,7 +373,7 @@ std::unique_ptr<session::Explorer> explorer_for(const RunOptions& options) {
 /// There are no instruments in virtual time.
 std::unique_ptr<session::Instruments> instruments_for(const RunOptions& options) {
   if (!options.real_time) return nullptr;
-  return session_instruments(device::device_settings_for(options.settings).instruments,
+  return session_instruments(device::load_device_settings(options.settings).instruments,
                              device::kServoRateHz);
 }
 
@@ -381,13 +384,14 @@ std::unique_ptr<session::SessionClock> clock_for(const session::Explorer& explor
 }
 
 /// Describes the simulated device in the session's first event.
-void describe_simulated(const session::Explorer& explorer, const device::DeviceModel& held,
+void describe_simulated(const session::Explorer& explorer,
+                        const device::DeviceModel& simulated_device,
                         record::SessionOpening& opening) {
   if (const auto* const real_time = dynamic_cast<const session::RealTimeExplorer*>(&explorer)) {
     const device::DeviceInfo device{"simulated", "", device::HandOptions{}.max_force_n, true};
     session::describe_station(opening, device, real_time->scheduling(), device::kServoRateHz, "");
   }
-  opening.device = device::words_of_simulated(held);
+  opening.device = device::simulated_device_name(simulated_device);
   opening.simulated = true;
 }
 
@@ -402,7 +406,7 @@ class SimulatedSession {
         database_(options, study),
         source_(study.source),
         instruments_(instruments_for(options)),
-        subject_(subject_for(*options.subject, study.key.study, options.on)),
+        subject_(subject_for(*options.subject, study.key.study, options.hand_device)),
         population_(simulation::population_of(
             {study.key, source_, subject_, options.seed,
              static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))})) {}
@@ -423,9 +427,10 @@ class SimulatedSession {
     session::AlwaysReady devices;
     DatabaseWatch watch(options_.database);
     RunExperimenter experimenter(
-        session::no_experimenter(), [&] { return watch.trouble(); },
-        [&] { return wait_to_record(*entered.sink); });
-    entered.sink->set_waiting([](const std::string& why) { return waits(why, [] {}); });
+        session::no_experimenter(), [&] { return watch.problem(); },
+        [&] { return wait_entry(*entered.sink); });
+    entered.sink->set_wait_callback(
+        [](const std::string& reason) { return show_wait_reason(reason, [] {}); });
     const session::SessionTexts texts = session_texts(study_.key.study);
     const session::SessionTally tally =
         session::run_session(*entered.session, {.key = study_.key,
@@ -439,7 +444,8 @@ class SimulatedSession {
                                                 .participant_name = options_.participant,
                                                 .device_name = "simulated",
                                                 .instruments = instruments_.get()});
-    return conclude_session(options_, entered.number, tally, database_.made(), watch.trouble());
+    return conclude_session(options_, entered.number, tally, database_.open_or_create(),
+                            watch.problem());
   }
 
  private:
@@ -454,16 +460,17 @@ class SimulatedSession {
 
 }  // namespace
 
-int run_study_session(const RunOptions& given) {
-  if (!given.participant.empty()) {
-    confirm_id("run", given.database, given.participant, given.yes);
+int run_study_session(const RunOptions& initial) {
+  if (!initial.participant.empty()) {
+    confirm_id("run", initial.database, initial.participant, initial.yes);
   }
   const EndingSignals signals;
-  RunStudy study = run_study_for(given);
-  confirm_enrolment(given, study.key);
-  const RunOptions options = given.participant.empty() ? with_participant(given, study.key) : given;
+  RunStudy study = run_study_for(initial);
+  confirm_enrolment(initial, study.key);
+  const RunOptions options =
+      initial.participant.empty() ? with_participant(initial, study.key) : initial;
   if (options.is_simulated()) return SimulatedSession(options, study).run();
-  return PersonsSession(options, study).run();
+  return PersonSession(options, study).run();
 }
 
 }  // namespace touchtrial::app

@@ -25,7 +25,7 @@ struct EnteredSession {
   int number = 0;
   int enrolment = 0;
   study::ScheduleDraw draw;          ///< the inputs of its schedule
-  std::chrono::nanoseconds clock{};  ///< current time of the session's clock
+  std::chrono::nanoseconds clock{};  ///< the session's current time
   std::unique_ptr<PatientSink> sink;
   std::unique_ptr<session::Session> session;
 };
@@ -33,19 +33,20 @@ struct EnteredSession {
 /// Describes device and station in a new session's first event.
 using DescribeOpening = std::function<void(record::SessionOpening&)>;
 
-/// \throws UsageError if the study has no such visit
+/// \throws UsageError if the study does not have that visit
 void require_planned_visit(const RunOptions& options, const study::Study& study);
 
-/// Asks at the terminal about an --enrolment number beyond the planned participants, or beyond the
-/// next number without a plan. The ranges of a divided study's stations are checked separately.
+/// Asks for confirmation of an --enrolment number above the planned number of participants, or,
+/// without a plan, above the next number. The ranges of a divided study's stations are checked
+/// separately.
 /// \throws as confirm, and as StudyStore::open
 void confirm_enrolment(const RunOptions& options, const study::StationKey& key);
 
 /// Opens a new session for the participant, or handles the existing one according to
 /// `options.on_existing`. On return, the session's first or next event is stored. The database is
 /// created last.
-/// \throws StoreError if the participant has a session that may not be resumed (with its number,
-///   its progress and the remedy), or if the database refuses
+/// \throws StoreError if the participant's session may not be resumed (with its number, its progress
+///   and the remedy), or if the database refuses
 /// \throws UsageError if the participant's id is invalid, they cannot get an enrolment number, or
 ///   the study has no such visit
 [[nodiscard]] EnteredSession enter_session(const RunOptions& options, const RunStudy& study,
@@ -64,21 +65,21 @@ class EndingSignals {
 
   /// May be called from any thread.
   /// \return the number of the received signal, also during explorations; 0: none
-  [[nodiscard]] static int which() noexcept;
-  /// \return for instance "stopped by SIGTERM"; empty: none came
+  [[nodiscard]] static int signal_number() noexcept;
+  /// \return for instance "stopped by SIGTERM"; empty: none was received
   [[nodiscard]] static std::string message();
 };
 
-/// Passes everything on to the experimenter's terminal or window, prints a line to standard output
-/// for each durable response, and leaves the session when the program is to end.
+/// Forwards everything to the experimenter's terminal or window, prints a line to standard output
+/// for each durable response, and leaves the session when the program must end.
 class RunExperimenter final : public session::Experimenter {
  public:
   /// \param inner  must outlive this object
   /// \param end_reason  reason to end the program other than signals; "": none
-  /// \param more  further requests, such as those of the sound; empty: none
+  /// \param extra_request  the next request from another source, such as the sound; empty: none
   /// \param alert  SessionStatus::alert; empty: none
   RunExperimenter(session::Experimenter& inner, std::function<std::string()> end_reason,
-                  std::function<std::optional<session::ExperimenterRequest>()> more = {},
+                  std::function<std::optional<session::ExperimenterRequest>()> extra_request = {},
                   std::function<std::string()> alert = {});
 
   void show(const session::SessionStatus& status) override;
@@ -92,17 +93,17 @@ class RunExperimenter final : public session::Experimenter {
  private:
   session::Experimenter& inner_;
   std::function<std::string()> end_reason_;
-  std::function<std::optional<session::ExperimenterRequest>()> more_;
+  std::function<std::optional<session::ExperimenterRequest>()> extra_request_;
   std::function<std::string()> alert_;
 };
 
 /// Prints the session's summary, without outcomes, and how to resume the session if it was left
 /// open.
-/// \param trouble  DatabaseWatch::trouble; if not empty, the store's content is saved beside the
+/// \param problem  DatabaseWatch::problem; if not empty, the store's content is saved beside the
 ///   database
 /// \return the exit code, as run_study_session
 [[nodiscard]] int conclude_session(const RunOptions& options, int session,
                                    const session::SessionTally& tally, record::StudyStore& store,
-                                   std::string trouble);
+                                   std::string problem);
 
 }  // namespace touchtrial::app

@@ -18,14 +18,14 @@ namespace {
 constexpr int kOctaves = 16;
 constexpr std::size_t kSamples = std::size_t{1} << 18;
 
-/// The sum of all rows; the slowest row has four steps in a loop.
+/// The sum of all rows of random steps; the slowest row has four steps per loop.
 std::vector<double> sum_of_steps(RandomStream& random) {
   std::vector<double> sum(kSamples);
   for (int octave = 0; octave <= kOctaves; ++octave) {
-    const std::size_t hold = std::size_t{1} << octave;
-    for (std::size_t first = 0; first < kSamples; first += hold) {
+    const std::size_t step_length = std::size_t{1} << octave;
+    for (std::size_t begin = 0; begin < kSamples; begin += step_length) {
       const double step = random.uniform(-1.0, 1.0);
-      for (std::size_t i = first; i < first + hold; ++i) sum[i] += step;
+      for (std::size_t i = begin; i < begin + step_length; ++i) sum[i] += step;
     }
   }
   return sum;
@@ -44,20 +44,20 @@ constexpr double kPipGapS = 0.12;
 constexpr double kLongMarkS = 0.45;
 constexpr double kToneRampS = 0.01;
 
-/// A glide from one frequency to another, between two ramps.
-void add_tone(std::vector<float>& samples, double rate_hz, double from_hz, double to_hz,
+/// Adds a glide from one frequency to another, with a ramp at each end.
+void add_tone(std::vector<float>& samples, double rate_hz, double start_hz, double end_hz,
               double seconds, double amplitude = kToneAmplitude) {
   const auto count = static_cast<std::size_t>(std::lround(seconds * rate_hz));
   const auto ramp = std::lround(kToneRampS * rate_hz);
-  double turns = 0.0;
+  double cycles = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto to_edge = static_cast<double>(std::min(i, count - 1 - i));
-    const double up = std::min(1.0, to_edge / static_cast<double>(ramp));
-    const double envelope = 0.5 - 0.5 * std::cos(std::numbers::pi * up);
+    const auto edge_distance = static_cast<double>(std::min(i, count - 1 - i));
+    const double rise = std::min(1.0, edge_distance / static_cast<double>(ramp));
+    const double envelope = 0.5 - 0.5 * std::cos(std::numbers::pi * rise);
     samples.push_back(
-        static_cast<float>(amplitude * envelope * std::sin(2.0 * std::numbers::pi * turns)));
-    const double done = static_cast<double>(i) / static_cast<double>(count);
-    turns += (from_hz + (to_hz - from_hz) * done) / rate_hz;
+        static_cast<float>(amplitude * envelope * std::sin(2.0 * std::numbers::pi * cycles)));
+    const double progress = static_cast<double>(i) / static_cast<double>(count);
+    cycles += (start_hz + (end_hz - start_hz) * progress) / rate_hz;
   }
 }
 
@@ -65,7 +65,7 @@ void add_silence(std::vector<float>& samples, double rate_hz, double seconds) {
   samples.resize(samples.size() + static_cast<std::size_t>(std::lround(seconds * rate_hz)));
 }
 
-/// Adds short pips, whose count is the number of an interval.
+/// Adds short pips that count up to the number of an interval.
 void add_pips(std::vector<float>& samples, double rate_hz, int count) {
   for (int i = 0; i < count; ++i) {
     if (i > 0) add_silence(samples, rate_hz, kPipGapS);
@@ -73,7 +73,7 @@ void add_pips(std::vector<float>& samples, double rate_hz, int count) {
   }
 }
 
-/// The tones differ in contour, not only in pitch.
+/// The samples of a cue. Cues differ in contour, not only in pitch.
 std::vector<float> tone_of(Cue cue, double rate_hz) {
   std::vector<float> samples;
   switch (cue) {
@@ -118,10 +118,10 @@ std::vector<float> masking_noise(double level_dbfs, std::uint64_t seed) {
   double power = 0.0;
   for (const double value : sum) power += (value - mean) * (value - mean);
   const double rms = std::sqrt(power / static_cast<double>(kSamples));
-  const double wanted = std::pow(10.0, std::min(level_dbfs, kHighestMaskingDbfs) / 20.0);
+  const double target_rms = std::pow(10.0, std::min(level_dbfs, kMaxMaskingDbfs) / 20.0);
   std::vector<float> noise(kSamples);
   for (std::size_t i = 0; i < kSamples; ++i) {
-    noise[i] = static_cast<float>((sum[i] - mean) * wanted / rms);
+    noise[i] = static_cast<float>((sum[i] - mean) * target_rms / rms);
   }
   return noise;
 }
@@ -131,32 +131,32 @@ SoundMixer::SoundMixer(double sample_rate_hz, std::vector<float> noise)
   for (const Cue cue : kCues) {
     Voice& voice = voices_[static_cast<std::size_t>(cue)];
     voice.tone = tone_of(cue, sample_rate_hz);
-    voice.at = voice.tone.size();
+    voice.position = voice.tone.size();
   }
 }
 
-void SoundMixer::tone(Cue cue) noexcept {
-  voices_[static_cast<std::size_t>(cue)].asked.store(true);
+void SoundMixer::play(Cue cue) noexcept {
+  voices_[static_cast<std::size_t>(cue)].is_requested.store(true);
 }
 
 float SoundMixer::next_noise() noexcept {
   if (noise_.empty()) return 0.0F;
-  const float target = masks_.load(std::memory_order_relaxed) ? 1.0F : 0.0F;
+  const float target = is_masking_.load(std::memory_order_relaxed) ? 1.0F : 0.0F;
   gain_ = std::clamp(target, gain_ - gain_step_, gain_ + gain_step_);
-  const float sample = gain_ * noise_[noise_at_];
-  noise_at_ = noise_at_ + 1 == noise_.size() ? 0 : noise_at_ + 1;
+  const float sample = gain_ * noise_[noise_position_];
+  noise_position_ = noise_position_ + 1 == noise_.size() ? 0 : noise_position_ + 1;
   return sample;
 }
 
 void SoundMixer::render(std::span<float> samples) noexcept {
   for (Voice& voice : voices_) {
-    const bool asked = voice.asked.exchange(false);
-    if (asked && voice.at == voice.tone.size()) voice.at = 0;
+    const bool is_requested = voice.is_requested.exchange(false);
+    if (is_requested && voice.position == voice.tone.size()) voice.position = 0;
   }
   for (float& sample : samples) {
     float sum = next_noise();
     for (Voice& voice : voices_) {
-      if (voice.at < voice.tone.size()) sum += voice.tone[voice.at++];
+      if (voice.position < voice.tone.size()) sum += voice.tone[voice.position++];
     }
     sample = std::clamp(sum, -1.0F, 1.0F);
   }
@@ -165,21 +165,22 @@ void SoundMixer::render(std::span<float> samples) noexcept {
 
 namespace {
 
-int give_samples(const void* /*input*/, void* output, unsigned long frames,
-                 const PaStreamCallbackTimeInfo* /*times*/, PaStreamCallbackFlags /*flags*/,
-                 void* mixer) {
+int render_callback(const void* /*input*/, void* output, unsigned long frames,
+                    const PaStreamCallbackTimeInfo* /*times*/, PaStreamCallbackFlags /*flags*/,
+                    void* mixer) {
   static_cast<SoundMixer*>(mixer)->render({static_cast<float*>(output), frames});
   return paContinue;
 }
 
-session::ExperimenterRequest no_masking(const std::string& why) {
-  return {session::ExperimenterRequest::Kind::deviation, why, "no-masking-noise"};
+session::ExperimenterRequest no_masking_entry(const std::string& reason) {
+  return {session::ExperimenterRequest::Kind::deviation, reason, "no-masking-noise"};
 }
 
 }  // namespace
 
 struct SoundCard::Stream {
-  explicit Stream(SoundMixer& mixer) : stream(library.opened(give_samples, &mixer, kRateHz)) {
+  explicit Stream(SoundMixer& mixer)
+      : stream(library.open_default_output(render_callback, &mixer, kRateHz)) {
     library.start(stream);
   }
   ~Stream() { library.close(stream); }
@@ -197,7 +198,7 @@ SoundCard::SoundCard(SoundMixer& mixer) {
 
 SoundCard::~SoundCard() = default;
 
-bool SoundCard::plays() const noexcept {
+bool SoundCard::is_playing() const noexcept {
   return stream_->library.is_active(stream_->stream);
 }
 
@@ -205,33 +206,33 @@ SessionSound::SessionSound(const study::MaskingPlan& plan, std::uint64_t seed)
     : plan_(plan),
       mixer_(SoundCard::kRateHz,
              plan.wanted ? masking_noise(plan.level_dbfs, seed) : std::vector<float>{}) {
-  mixer_.mask(plan.wanted);
+  mixer_.set_masking(plan.wanted);
   try {
     card_.emplace(mixer_);
   } catch (const DeviceError& error) {
-    trouble_ = error.what();
+    failure_reason_ = error.what();
   }
 }
 
-void SessionSound::tone(Cue cue) noexcept {
-  mixer_.tone(cue);
+void SessionSound::play(Cue cue) noexcept {
+  mixer_.play(cue);
 }
 
-std::optional<session::ExperimenterRequest> SessionSound::to_record() {
+std::optional<session::ExperimenterRequest> SessionSound::next_record_entry() {
   if (!plan_.wanted) return std::nullopt;
-  if (!recorded_) {
-    recorded_ = true;
-    if (!card_) return no_masking(trouble_);
-    return session::ExperimenterRequest{
-        session::ExperimenterRequest::Kind::note,
-        fmt::format("masking noise at {:.1f} dBFS rms",
-                    std::min(plan_.level_dbfs, kHighestMaskingDbfs)),
-        ""};
+  if (!is_recorded_) {
+    is_recorded_ = true;
+    if (!card_) return no_masking_entry(failure_reason_);
+    return session::ExperimenterRequest{session::ExperimenterRequest::Kind::note,
+                                        fmt::format("masking noise at {:.1f} dBFS rms",
+                                                    std::min(plan_.level_dbfs, kMaxMaskingDbfs)),
+                                        ""};
   }
-  if (!card_ || loss_recorded_ || card_->plays()) return std::nullopt;
-  loss_recorded_ = true;
-  trouble_ = "sound: the output is gone; connect the headphones again before the next session";
-  return no_masking(trouble_);
+  if (!card_ || is_loss_recorded_ || card_->is_playing()) return std::nullopt;
+  is_loss_recorded_ = true;
+  failure_reason_ =
+      "sound: the output was lost; connect the headphones again before the next session";
+  return no_masking_entry(failure_reason_);
 }
 
 }  // namespace touchtrial::app

@@ -20,35 +20,35 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr int kBarWidth = 30;
 
-void draw_bar(const std::string& what, int done, int of) {
-  const int filled = of > 0 ? kBarWidth * done / of : kBarWidth;
-  const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
-                          std::string(static_cast<std::size_t>(kBarWidth - filled), '.');
-  const std::string line = fmt::format("\r{} [{}] {}/{}", what, bar, done, of);
+void draw_bar(const std::string& label, int done, int total) {
+  const int filled_width = total > 0 ? kBarWidth * done / total : kBarWidth;
+  const std::string bar = std::string(static_cast<std::size_t>(filled_width), '#') +
+                          std::string(static_cast<std::size_t>(kBarWidth - filled_width), '.');
+  const std::string line = fmt::format("\r{} [{}] {}/{}", label, bar, done, total);
   std::fputs(line.c_str(), stderr);
-  if (done >= of) std::fputs("\r\x1b[K", stderr);
+  if (done >= total) std::fputs("\r\x1b[K", stderr);
   std::fflush(stderr);
 }
 
 }  // namespace
 
-void print(const std::string& given) {
-  const std::string text = printable(given);
-  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
-  if (written && std::fflush(stdout) == 0) return;
-  const int why = errno;
-  if (why == EPIPE) throw ClosedPipe("standard output: its reader has exited");
-  throw FileError("standard output: cannot be written (" + std::generic_category().message(why) +
+void print(const std::string& text) {
+  const std::string escaped = printable(text);
+  const bool is_written = std::fwrite(escaped.data(), 1, escaped.size(), stdout) == escaped.size();
+  if (is_written && std::fflush(stdout) == 0) return;
+  const int error = errno;
+  if (error == EPIPE) throw ClosedPipe("standard output: its reader has exited");
+  throw FileError("standard output: cannot be written (" + std::generic_category().message(error) +
                   "); make room, or name another file");
 }
 
-void confirm(const std::string& about, bool yes) {
+void confirm(const std::string& description, bool yes) {
   if (yes) return;
   if (::isatty(STDIN_FILENO) == 0) {
-    throw UsageError(one_line(about) +
+    throw UsageError(one_line(description) +
                      "; nothing was done: standard input is not a terminal; confirm with --yes");
   }
-  const std::string question = one_line(about) + "\ntype yes to continue: ";
+  const std::string question = one_line(description) + "\ntype yes to continue: ";
   std::fputs(question.c_str(), stderr);
   std::string answer;
   std::getline(std::cin, answer);
@@ -70,11 +70,11 @@ std::string shell_word(const std::string& text) {
   return word + "'";
 }
 
-std::function<void(int, int)> progress_bar(const std::string& what) {
+std::function<void(int, int)> progress_bar(const std::string& label) {
   if (::isatty(STDERR_FILENO) == 0) return [](int, int) {};
-  const auto shown_from = Clock::now() + std::chrono::seconds(1);
-  return [what, shown_from](int done, int of) {
-    if (Clock::now() >= shown_from) draw_bar(what, done, of);
+  const auto start_time = Clock::now() + std::chrono::seconds(1);
+  return [label, start_time](int done, int total) {
+    if (Clock::now() >= start_time) draw_bar(label, done, total);
   };
 }
 

@@ -26,13 +26,13 @@ void print(const std::string& text);
 
 /// Asks for confirmation at the terminal, before anything is done; `--yes` answers in advance
 /// (add_yes_flag).
-/// \param about  one line: the participant concerned, and what will be lost or shown
+/// \param description  one line: the participant concerned, and what will be lost or shown
 /// \param yes  --yes: nothing is printed or asked
-/// \throws UsageError if the answer is not "yes", or standard input is no terminal
-void confirm(const std::string& about, bool yes);
+/// \throws UsageError if the answer is not "yes", or standard input is not a terminal
+void confirm(const std::string& description, bool yes);
 
-/// The columns of the terminal on standard output, from 80 to 100, which is also the width of a
-/// file or pipe: analysis::kTextWidth.
+/// The width of the terminal on standard output, clamped to 80 to 100 columns; 100 for a file or
+/// pipe (analysis::kTextWidth).
 [[nodiscard]] std::size_t columns_of_output();
 
 /// An argument quoted for a shell.
@@ -40,7 +40,7 @@ void confirm(const std::string& about, bool yes);
 
 /// A progress bar on standard error. It appears only on a terminal and after one second, and
 /// disappears when the work ends. Call it from one thread.
-[[nodiscard]] std::function<void(int done, int of)> progress_bar(const std::string& what);
+[[nodiscard]] std::function<void(int done, int total)> progress_bar(const std::string& label);
 
 /// Nanoseconds since 1970, UTC.
 [[nodiscard]] std::chrono::nanoseconds utc_now();

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kQuestions = 3;
+constexpr int kMaxPrompts = 3;
 constexpr std::size_t kMaxPassphraseBytes = 4096;
 
 /// Switches the terminal to raw input without echo; Ctrl-C is read as a key, so that the terminal
@@ -26,26 +26,26 @@ constexpr std::size_t kMaxPassphraseBytes = 4096;
 class NoEcho {
  public:
   NoEcho() {
-    if (::tcgetattr(STDIN_FILENO, &before_) != 0) {
+    if (::tcgetattr(STDIN_FILENO, &original_) != 0) {
       throw UsageError("the terminal cannot hide what is typed; give --passphrase-file");
     }
-    termios hidden = before_;
-    hidden.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO | ISIG);
-    hidden.c_cc[VMIN] = 1;
-    hidden.c_cc[VTIME] = 0;
-    ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &hidden);
+    termios raw_mode = original_;
+    raw_mode.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO | ISIG);
+    raw_mode.c_cc[VMIN] = 1;
+    raw_mode.c_cc[VTIME] = 0;
+    ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &raw_mode);
   }
-  ~NoEcho() { ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_); }
+  ~NoEcho() { ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &original_); }
   NoEcho(const NoEcho&) = delete;
   NoEcho& operator=(const NoEcho&) = delete;
 
  private:
-  termios before_{};
+  termios original_{};
 };
 
-/// Reads one typed line while a NoEcho lives, with backspace and Ctrl-U.
+/// Reads one typed line while a NoEcho exists; backspace and Ctrl-U edit it.
 /// \throws UsageError after Ctrl-C, Ctrl-D, or the end of the input
-std::string typed_line() {
+std::string read_hidden_line() {
   constexpr char kBackspace = '\x08';
   constexpr char kDelete = '\x7f';
   constexpr char kErase = '\x15';
@@ -68,13 +68,13 @@ std::string typed_line() {
   throw UsageError("no passphrase was given; nothing was changed");
 }
 
-std::string asked(const std::string& question) {
-  const NoEcho hidden;  // before the question, because an answer may come at once
+std::string ask_hidden(const std::string& question) {
+  const NoEcho no_echo;  // before the question, because the answer may follow at once
   std::fputs(question.c_str(), stderr);
   std::fflush(stderr);
   const auto end_line = [] { std::fputs("\n", stderr); };
   try {
-    std::string line = typed_line();
+    std::string line = read_hidden_line();
     end_line();
     return line;
   } catch (const UsageError&) {
@@ -83,7 +83,7 @@ std::string asked(const std::string& question) {
   }
 }
 
-std::string first_line_of(const fs::path& source) {
+std::string read_first_line(const fs::path& source) {
   std::error_code error;
   if (fs::is_regular_file(source, error)) require_owner_only(source);
   std::ifstream file(source);
@@ -98,12 +98,12 @@ std::string first_line_of(const fs::path& source) {
   return line;
 }
 
-/// A descriptor can be read once.
+/// Caches passphrases, because a descriptor can be read only once.
 const std::string& passphrase_in(const fs::path& source) {
-  static std::map<fs::path, std::string> read;
-  const auto known = read.find(source);
-  return known != read.end() ? known->second
-                             : read.emplace(source, first_line_of(source)).first->second;
+  static std::map<fs::path, std::string> cache;
+  const auto entry = cache.find(source);
+  return entry != cache.end() ? entry->second
+                              : cache.emplace(source, read_first_line(source)).first->second;
 }
 
 std::optional<std::string> passphrase_for(const fs::path& file, int attempt) {
@@ -113,9 +113,9 @@ std::optional<std::string> passphrase_for(const fs::path& file, int attempt) {
     if (index >= sources.size()) return std::nullopt;
     return passphrase_in(sources[index]);
   }
-  if (::isatty(STDIN_FILENO) == 0 || attempt > kQuestions) return std::nullopt;
-  return asked((attempt > 1 ? "wrong passphrase; " : "") + std::string("passphrase of ") +
-               one_line(file.string()) + ": ");
+  if (::isatty(STDIN_FILENO) == 0 || attempt > kMaxPrompts) return std::nullopt;
+  return ask_hidden((attempt > 1 ? "wrong passphrase; " : "") + std::string("passphrase of ") +
+                    one_line(file.string()) + ": ");
 }
 
 }  // namespace
@@ -125,20 +125,21 @@ std::vector<fs::path>& passphrase_files() {
   return files;
 }
 
-void answer_for_passphrases() {
-  study::ask_passphrases_with(passphrase_for);
+void provide_passphrases() {
+  study::set_passphrase_prompt(passphrase_for);
 }
 
 std::string new_passphrase(const fs::path& file, const std::vector<fs::path>& sources) {
   if (!sources.empty()) return passphrase_in(sources.front());
   const std::string name = one_line(file.string());
   if (::isatty(STDIN_FILENO) == 0) {
-    throw UsageError(name +
-                     ": a new passphrase needs a terminal, and standard input is not one; name a "
-                     "file with the passphrase in its first line");
+    throw UsageError(
+        name +
+        ": a new passphrase is read from a terminal, and standard input is not one; name a "
+        "file with the passphrase in its first line");
   }
-  std::string passphrase = asked("new passphrase of " + name + ": ");
-  if (asked("the same again: ") != passphrase) {
+  std::string passphrase = ask_hidden("new passphrase of " + name + ": ");
+  if (ask_hidden("repeat the new passphrase: ") != passphrase) {
     throw UsageError(name + ": the two passphrases differ; nothing was changed");
   }
   return passphrase;

@@ -1,5 +1,5 @@
-/// \file Passphrases of protected files: from the files that --passphrase-file names, else asked
-/// for on the terminal. Never on the command line, which every user of the machine can read.
+/// \file Passphrases of protected files: from the files of --passphrase-file, otherwise from the
+/// terminal. Never from the command line, which every user of the machine can read.
 #pragma once
 
 #include <filesystem>
@@ -12,8 +12,8 @@ namespace touchtrial::app {
 [[nodiscard]] std::vector<std::filesystem::path>& passphrase_files();
 
 /// Provides passphrases when protected files are opened: the first line of each passphrase file in
-/// turn, else from the terminal, without echo.
-void answer_for_passphrases();
+/// turn, otherwise from the terminal, without echo.
+void provide_passphrases();
 
 /// A passphrase for a file to protect: the first line of the first of `sources`, or else typed
 /// twice at the terminal.

@@ -5,7 +5,7 @@
 
 namespace touchtrial::app {
 
-/// Reads standard input and never waits. While this object lives, keys on the program's terminal
+/// Reads standard input and never waits. While this object exists, keys on the program's terminal
 /// are delivered one by one without echo. Ctrl-C remains a signal; Ctrl-Z does not, because a
 /// suspended program cannot release a force. A pipe or file yields its characters up to its end.
 /// One object at a time.
@@ -24,7 +24,7 @@ class TerminalKeys {
   [[nodiscard]] std::optional<char> next();
 
  private:
-  bool ended_ = false;
+  bool is_at_end_ = false;
 };
 
 }  // namespace touchtrial::app

@@ -23,7 +23,7 @@
 namespace touchtrial::app {
 namespace {
 
-/// The area of the window on the monitor, window units squared.
+/// The visible area of the window on the monitor, window units squared.
 int overlap(GLFWwindow* window, GLFWmonitor* monitor) {
   int x = 0;
   int y = 0;
@@ -36,20 +36,21 @@ int overlap(GLFWwindow* window, GLFWmonitor* monitor) {
   glfwGetMonitorPos(monitor, &monitor_x, &monitor_y);
   const GLFWvidmode* mode = glfwGetVideoMode(monitor);
   if (mode == nullptr) return 0;
-  const int across = std::min(x + width, monitor_x + mode->width) - std::max(x, monitor_x);
-  const int down = std::min(y + height, monitor_y + mode->height) - std::max(y, monitor_y);
-  return std::max(across, 0) * std::max(down, 0);
+  const int overlap_width = std::min(x + width, monitor_x + mode->width) - std::max(x, monitor_x);
+  const int overlap_height =
+      std::min(y + height, monitor_y + mode->height) - std::max(y, monitor_y);
+  return std::max(overlap_width, 0) * std::max(overlap_height, 0);
 }
 
 GLFWmonitor* monitor_of(GLFWwindow* window) {
   int count = 0;
   GLFWmonitor** monitors = glfwGetMonitors(&count);
   GLFWmonitor* best = glfwGetPrimaryMonitor();
-  int max_shown = 0;
+  int max_visible_area = 0;
   for (int i = 0; i < count; ++i) {
-    const int shown = overlap(window, monitors[i]);
-    if (shown > max_shown) best = monitors[i];
-    max_shown = std::max(max_shown, shown);
+    const int visible_area = overlap(window, monitors[i]);
+    if (visible_area > max_visible_area) best = monitors[i];
+    max_visible_area = std::max(max_visible_area, visible_area);
   }
   return best;
 }
@@ -63,31 +64,28 @@ float density_of(GLFWwindow* window) {
   glfwGetWindowSize(window, &units, nullptr);
   glfwGetFramebufferSize(window, &pixels, nullptr);
   if (units <= 0 || pixels <= 0) return 1.0F;
-  const float hidden = static_cast<float>(pixels) / static_cast<float>(units);
-  return std::clamp(content / hidden, 1.0F, 4.0F);
+  const float pixels_per_unit = static_cast<float>(pixels) / static_cast<float>(units);
+  return std::clamp(content / pixels_per_unit, 1.0F, 4.0F);
 }
 
-}  // namespace
-
-namespace {
-
 constexpr std::size_t kMaxScreens = 1000;
-// Filled when GLFW is started, on the main thread.
-std::map<std::string, double> measured_screens;  ///< ScreenScale::mm_per_unit, by its monitor
-std::map<std::string, std::string> edids;        ///< by the monitor's name
+// Filled on the main thread when GLFW starts.
+std::map<std::string, double> measured_screens;  ///< mm_per_unit by ScreenScale::monitor
+std::map<std::string, std::string> edids;        ///< EDID hashes by the monitor's name
 
-/// The first digits of the hash of the monitor's EDID; empty where the system does not show it.
-/// Linux has it by connector, whose name the windowing system may shorten: "HDMI-1" for "HDMI-A-1".
+/// The first digits of the hash of the monitor's EDID; empty if the system does not provide it.
+/// Linux lists it by connector, whose name the windowing system may shorten: "HDMI-1" for
+/// "HDMI-A-1".
 std::string edid_of(const std::string& name) {
   constexpr std::size_t kDigits = 8;
-  std::string longer = name;
-  if (const std::size_t at = longer.find("HDMI-"); at != std::string::npos) {
-    longer.insert(at + 5, "A-");
+  std::string full_name = name;
+  if (const std::size_t at = full_name.find("HDMI-"); at != std::string::npos) {
+    full_name.insert(at + 5, "A-");
   }
   std::error_code unreadable;
   for (const auto& entry : std::filesystem::directory_iterator("/sys/class/drm", unreadable)) {
     const std::string connector = entry.path().filename().string();
-    if (!connector.ends_with("-" + name) && !connector.ends_with("-" + longer)) continue;
+    if (!connector.ends_with("-" + name) && !connector.ends_with("-" + full_name)) continue;
     try {
       const Bytes edid = read_file(entry.path() / "edid");
       if (!edid.empty()) return to_hex(sha256(edid)).substr(0, kDigits);
@@ -102,11 +100,11 @@ std::string identity_of(GLFWmonitor* monitor, const GLFWvidmode& mode) {
   int width_mm = 0;
   int height_mm = 0;
   glfwGetMonitorPhysicalSize(monitor, &width_mm, &height_mm);
-  const char* const stated = glfwGetMonitorName(monitor);
-  const std::string name = one_line(stated == nullptr ? "monitor" : stated);
-  const auto [at, is_new] = edids.try_emplace(name);
-  if (is_new) at->second = edid_of(name);
-  const std::string& edid = at->second;
+  const char* const monitor_name = glfwGetMonitorName(monitor);
+  const std::string name = one_line(monitor_name == nullptr ? "monitor" : monitor_name);
+  const auto [entry, is_new] = edids.try_emplace(name);
+  if (is_new) entry->second = edid_of(name);
+  const std::string& edid = entry->second;
   return fmt::format("{}, {} x {}, {} x {} mm{}", name, mode.width, mode.height, width_mm,
                      height_mm, edid.empty() ? "" : ", EDID " + edid);
 }
@@ -114,7 +112,7 @@ std::string identity_of(GLFWmonitor* monitor, const GLFWvidmode& mode) {
 /// \throws StudyError, or FileError, with the remedy
 std::map<std::string, double> read_measured_screens(const std::filesystem::path& file) {
   std::map<std::string, double> screens;
-  if (file.empty() || !is_there(file)) return screens;
+  if (file.empty() || !path_exists(file)) return screens;
   constexpr std::uintmax_t kMaxFileBytes = 1U << 20U;
   const Bytes content = read_file(file, kMaxFileBytes);
   const JsonObject root = parse_strict_json(text_of(content), file.string()).object({"screens"});
@@ -129,13 +127,12 @@ std::map<std::string, double> read_measured_screens(const std::filesystem::path&
 }  // namespace
 
 std::filesystem::path measured_screens_path() {
-  // Beside the devices' settings.
   std::filesystem::path file = device::default_device_settings_path();
   if (!file.empty()) file.replace_filename("screens.json");
   return file;
 }
 
-void keep_measured_screen(const std::string& monitor, double mm_per_unit) {
+void save_measured_screen(const std::string& monitor, double mm_per_unit) {
   measured_screens[monitor] = mm_per_unit;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const auto& [name, scale] : measured_screens) {
@@ -152,7 +149,9 @@ GlfwLibrary::GlfwLibrary() {
     measured_screens = read_measured_screens(measured_screens_path());
   } catch (const Error& error) {
     measured_screens.clear();
-    spdlog::warn("{}; no screen counts as measured: see touchtrial screen calibrate", error.what());
+    spdlog::warn(
+        "{}; measured screen sizes are ignored; measure again with `touchtrial screen calibrate`",
+        error.what());
   }
 #ifdef GLFW_PLATFORM
   // GLFW 3.4 and later also support Wayland, where windows cannot be positioned.
@@ -191,13 +190,14 @@ ScreenScale screen_scale(GLFWwindow* window) {
   if (mode->refreshRate > 0) scale.refresh_hz = mode->refreshRate;
   int width_mm = 0;
   glfwGetMonitorPhysicalSize(monitor, &width_mm, nullptr);
-  const double stated = stated_mm_per_unit(width_mm, mode->width);
-  if (stated > 0.0) scale.mm_per_unit = stated;
+  const double stated_scale = stated_mm_per_unit(width_mm, mode->width);
+  if (stated_scale > 0.0) scale.mm_per_unit = stated_scale;
   scale.monitor = identity_of(monitor, *mode);
-  const auto measured = measured_screens.find(scale.monitor);
-  scale.is_measured = measured != measured_screens.end();
-  if (scale.is_measured) scale.mm_per_unit = measured->second;
-  scale.is_known = scale.is_measured || (stated > 0.0 && !is_default_size(width_mm, mode->width));
+  const auto measured_screen = measured_screens.find(scale.monitor);
+  scale.is_measured = measured_screen != measured_screens.end();
+  if (scale.is_measured) scale.mm_per_unit = measured_screen->second;
+  scale.is_known =
+      scale.is_measured || (stated_scale > 0.0 && !is_default_size(width_mm, mode->width));
   return scale;
 }
 
@@ -212,7 +212,7 @@ double stated_mm_per_unit(int size_mm, int width) noexcept {
   return is_plausible ? mm_per_unit : 0.0;
 }
 
-engine::ColourImage drawn_picture(int width, int height) {
+engine::ColourImage capture_frame(int width, int height) {
   std::vector<unsigned char> bytes(static_cast<std::size_t>(width) * height * 3);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, bytes.data());

@@ -1,7 +1,7 @@
 /// \file The shared GLFW and OpenGL code of all windows: initialisation, the scale of a screen, and
-/// screenshots. Neither library is exposed. Scales measured with a card (`screen calibrate`) are in
-/// screens.json in the user's configuration folder; format: docs/data-dictionary.md, "Measured
-/// screens".
+/// screenshots. Neither library is exposed. Scales measured with a card (`screen calibrate`) are
+/// stored in screens.json in the user's configuration folder; format: docs/data-dictionary.md,
+/// "Measured screens".
 #pragma once
 
 #include "core/units.hpp"
@@ -35,13 +35,13 @@ void hint_opengl_3_2();
 /// The scale of the monitor that shows the largest part of a window.
 struct ScreenScale {
   double mm_per_unit = kMmPerInch / 96.0;  ///< millimetres on the screen for one window unit
-  bool is_known = false;                   ///< measured, or the monitor states a plausible size
+  bool is_known = false;                   ///< measured, or stated plausibly by the monitor
   float density = 1.0F;                    ///< factor for all sizes; 1 at 96 window units per inch
   double refresh_hz = 60.0;
   /// The monitor: its name, resolution, stated size and, if available, a hash of its EDID (the
   /// monitor's self-description).
   std::string monitor{};
-  bool is_measured = false;  ///< by `screen calibrate`
+  bool is_measured = false;  ///< measured by `screen calibrate`
 };
 
 /// Call it on the main thread while GLFW is running.
@@ -64,10 +64,10 @@ struct ScreenScale {
 /// \param mm_per_unit  25.4 / 400 to 25.4 / 40
 /// \pre GLFW was started before
 /// \throws FileError if the file cannot be written
-void keep_measured_screen(const std::string& monitor, double mm_per_unit);
+void save_measured_screen(const std::string& monitor, double mm_per_unit);
 
 /// The picture of the current OpenGL context, before its buffers are swapped.
 /// \param width,height  pixels, >= 1
-[[nodiscard]] engine::ColourImage drawn_picture(int width, int height);
+[[nodiscard]] engine::ColourImage capture_frame(int width, int height);
 
 }  // namespace touchtrial::app

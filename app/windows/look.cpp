@@ -55,7 +55,7 @@ constexpr std::array kEastAsianFaces = {
 constexpr std::array<ImWchar, 5> kLetters = {0x0020, 0x00FF, 0x2010, 0x203A, 0};
 
 template <typename Faces>
-std::string installed(const Faces& faces) {
+std::string first_installed(const Faces& faces) {
   std::error_code unreadable;
   for (const char* face : faces) {
     if (std::filesystem::is_regular_file(face, unreadable)) return face;
@@ -63,56 +63,56 @@ std::string installed(const Faces& faces) {
   return "";
 }
 
-/// ImGui's own typeface.
-ImFont* add_own(ImFontAtlas& atlas, float height) {
-  ImFontConfig own;
-  own.SizePixels = height;
-  return atlas.AddFontDefault(&own);
+/// Adds ImGui's built-in typeface.
+ImFont* add_builtin_font(ImFontAtlas& atlas, float height) {
+  ImFontConfig options;
+  options.SizePixels = height;
+  return atlas.AddFontDefault(&options);
 }
 
-/// The glyph ranges for ImGui; must outlive the building of the atlas.
-struct WantedLetters {
+/// The glyphs to load; must outlive the building of the atlas.
+struct GlyphRanges {
   ImVector<ImWchar> ranges;
   bool east_asian = false;
 };
 
-ImFont* add_font(ImFontAtlas& atlas, const FontSize& size, const WantedLetters& wanted) {
-  std::string face = size.weight == FontWeight::bold ? installed(kBoldFaces) : "";
-  if (face.empty()) face = installed(kFaces);
+ImFont* add_font(ImFontAtlas& atlas, const FontSize& size, const GlyphRanges& glyphs) {
+  std::string face = size.weight == FontWeight::bold ? first_installed(kBoldFaces) : "";
+  if (face.empty()) face = first_installed(kFaces);
   ImFontConfig options;
-  options.OversampleH = 1;  // sufficient for large letters, and keeps the atlas small
+  options.OversampleH = 1;  // enough for large letters; keeps the atlas small
   ImFont* font = face.empty() ? nullptr
                               : atlas.AddFontFromFileTTF(face.c_str(), size.height, &options,
-                                                         wanted.ranges.Data);
-  if (font == nullptr) font = add_own(atlas, size.height);
-  const std::string other = wanted.east_asian ? installed(kEastAsianFaces) : "";
-  if (other.empty()) return font;
+                                                         glyphs.ranges.Data);
+  if (font == nullptr) font = add_builtin_font(atlas, size.height);
+  const std::string east_asian_face = glyphs.east_asian ? first_installed(kEastAsianFaces) : "";
+  if (east_asian_face.empty()) return font;
   options.MergeMode = true;  // adds only letters that the first typeface lacks
-  atlas.AddFontFromFileTTF(other.c_str(), std::round(kEastAsianScale * size.height), &options,
-                           wanted.ranges.Data);
+  atlas.AddFontFromFileTTF(east_asian_face.c_str(), std::round(kEastAsianScale * size.height),
+                           &options, glyphs.ranges.Data);
   return font;
 }
 
-WantedLetters wanted_of(const std::set<char32_t>& letters) {
-  WantedLetters wanted;
+GlyphRanges glyph_ranges_for(const std::set<char32_t>& letters) {
+  GlyphRanges glyphs;
   ImFontGlyphRangesBuilder builder;
   builder.AddRanges(kLetters.data());
   for (const char32_t letter : letters) {
     if (letter <= IM_UNICODE_CODEPOINT_MAX) builder.AddChar(static_cast<ImWchar>(letter));
-    wanted.east_asian = wanted.east_asian || is_east_asian(letter);
+    glyphs.east_asian = glyphs.east_asian || is_east_asian(letter);
   }
-  builder.BuildRanges(&wanted.ranges);
-  return wanted;
+  builder.BuildRanges(&glyphs.ranges);
+  return glyphs;
 }
 
 }  // namespace
 
 void load_fonts(float density) {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
-  const std::string face = installed(kFaces);
+  const std::string face = first_installed(kFaces);
   for (const float height : {kTextHeight * density, kLargeHeight * density}) {
     if (!face.empty() && atlas.AddFontFromFileTTF(face.c_str(), height) != nullptr) continue;
-    add_own(atlas, height);
+    add_builtin_font(atlas, height);
   }
 }
 
@@ -120,9 +120,9 @@ std::vector<ImFont*> load_letters(std::span<const FontSize> sizes,
                                   const std::set<char32_t>& letters) {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
   atlas.Clear();
-  const WantedLetters wanted = wanted_of(letters);
+  const GlyphRanges glyphs = glyph_ranges_for(letters);
   std::vector<ImFont*> fonts;
-  for (const FontSize& size : sizes) fonts.push_back(add_font(atlas, size, wanted));
+  for (const FontSize& size : sizes) fonts.push_back(add_font(atlas, size, glyphs));
   atlas.Build();
   return fonts;
 }
@@ -141,15 +141,15 @@ void require_letters(const std::set<char32_t>& letters) {
   constexpr float kAnyHeight = 13.0F;
   constexpr int kMaxNamed = 8;
   ImFontAtlas atlas;
-  const WantedLetters wanted = wanted_of(letters);
-  const ImFont* const font = add_font(atlas, {kAnyHeight, FontWeight::regular}, wanted);
+  const GlyphRanges glyphs = glyph_ranges_for(letters);
+  const ImFont* const font = add_font(atlas, {kAnyHeight, FontWeight::regular}, glyphs);
   atlas.Build();
   std::string missing;
   int count = 0;
   for (const char32_t letter : letters) {
-    const bool shown = letter <= IM_UNICODE_CODEPOINT_MAX &&
-                       font->FindGlyphNoFallback(static_cast<ImWchar>(letter)) != nullptr;
-    if (shown) continue;
+    const bool is_available = letter <= IM_UNICODE_CODEPOINT_MAX &&
+                              font->FindGlyphNoFallback(static_cast<ImWchar>(letter)) != nullptr;
+    if (is_available) continue;
     if (++count <= kMaxNamed) missing += fmt::format(" U+{:04X}", static_cast<unsigned>(letter));
   }
   if (count == 0) return;
@@ -164,13 +164,13 @@ ImVec2 imgui_vec(Vec2 point) noexcept {
   return {static_cast<float>(point.x), static_cast<float>(point.y)};
 }
 
-void draw_stylus(Vec2 at, bool pressed, float density) {
+void draw_stylus(Vec2 position, bool is_pressed, float density) {
   constexpr ImU32 colour = IM_COL32(0, 70, 130, 255);
-  const ImVec2 centre = imgui_vec(at);
+  const ImVec2 centre = imgui_vec(position);
   const float radius = 8.0F * density;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddCircleFilled(centre, radius + 2.0F * density, kWhite, 32);
-  if (pressed) {
+  if (is_pressed) {
     list.AddCircleFilled(centre, radius, colour, 32);
   } else {
     list.AddCircle(centre, radius - density, colour, 32, 3.0F * density);

@@ -28,12 +28,12 @@ inline constexpr PackedColour kPale = 0xFFE4E4E4;
 ///@}
 
 /// Loads two sizes of one typeface into ImGui's current context: text, and large text for reading
-/// from a distance. The typeface is DejaVu Sans or a similar installed one, else ImGui's own,
-/// enlarged.
+/// from a distance. The typeface is DejaVu Sans or a similar installed one, otherwise ImGui's
+/// built-in one, enlarged.
 /// \param density  as ScreenScale::density, >= 1
 void load_fonts(float density);
 
-/// The index of the large text in ImGui's list of fonts; that of the text is 0.
+/// The index of the large text in ImGui's list of fonts; the normal text has index 0.
 inline constexpr int kLargeFont = 1;
 
 enum class FontWeight { regular, bold };
@@ -43,10 +43,10 @@ struct FontSize {
   FontWeight weight = FontWeight::regular;
 };
 
-/// Replaces the fonts of ImGui's current context by sizes of the same typeface. They contain the
-/// letters of Western European languages, and the requested ones that an installed typeface has;
-/// Chinese and Japanese ones come from Droid Sans Fallback or a similar one. Few letters keep the
-/// fonts' texture small.
+/// Replaces the fonts of ImGui's current context with sizes of the same typeface. They contain the
+/// letters of Western European languages, and those requested letters that an installed typeface
+/// has, Chinese and Japanese ones from Droid Sans Fallback or similar. Loading few letters keeps
+/// the fonts' texture small.
 /// \return one font for each size
 std::vector<ImFont*> load_letters(std::span<const FontSize> sizes,
                                   const std::set<char32_t>& letters);
@@ -55,13 +55,13 @@ std::vector<ImFont*> load_letters(std::span<const FontSize> sizes,
 /// \return their letters, without blanks and control characters
 [[nodiscard]] std::set<char32_t> letters_in(const std::vector<std::string>& texts);
 
-/// \throws DeviceError with the letters and the remedy if no installed typeface has some of them
+/// \throws DeviceError that lists the letters missing from all installed typefaces, and the remedy
 void require_letters(const std::set<char32_t>& letters);
 
 /// Draws the stylus into ImGui's current window: a ring, which is filled while it is pressed.
-/// \param at  window units
+/// \param position  window units
 /// \param density  as ScreenScale::density
-void draw_stylus(Vec2 at, bool pressed, float density);
+void draw_stylus(Vec2 position, bool is_pressed, float density);
 
 [[nodiscard]] ImVec2 imgui_vec(Vec2 point) noexcept;
 

@@ -1,4 +1,4 @@
-/// \file The lines of a text: where they break in Latin and East Asian scripts, and bold words.
+/// \file Line breaking for Latin and East Asian scripts, with bold words.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace touchtrial::app {
 struct TextRun {
   std::string text;
   bool bold = false;
-  double x = 0.0;  ///< from the line's beginning, window units
+  double x = 0.0;  ///< distance from the line's beginning, window units
 };
 
 struct TextLine {
@@ -23,11 +23,11 @@ struct TextLine {
 
 /// Breaks a text at line feeds, at blanks, and beside Chinese and Japanese letters, but neither
 /// before closing punctuation nor after opening punctuation (after JIS X 4051). A word that is
-/// wider than a line is cut anywhere.
+/// wider than a line may break at any letter.
 /// \param text  UTF-8
 /// \param bold  face of the words between "**"; null: "**" is text
-/// \param size  of the letters, window units
-/// \param width  of the lines, window units
+/// \param size  size of the letters, window units
+/// \param width  width of the lines, window units
 [[nodiscard]] std::vector<TextLine> lines_of(std::string_view text, const ImFont& plain,
                                              const ImFont* bold, double size, double width);
 

@@ -1,4 +1,4 @@
-// Sweeps of the closed loop of hand and plane: prints the tables of docs/benchmarks/README.md
+// Simulates the closed loop of hand and plane, and prints the tables of docs/benchmarks/README.md
 // and of "Steps at touchdown" in docs/method.md.
 #include "bench/closed_loop/texture_loop.hpp"
 #include "engine/extraction.hpp"
@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kTypicalMmPerS = 100.0;
 
-/// A Markdown table head with its rule.
+/// Prints the header of a Markdown table.
 void print_heading(const std::string& names) {
   std::string rule = "|";
   for (const char c : names.substr(1)) {
@@ -40,7 +40,7 @@ const char* name_of(engine::ModelKind model) {
   return model == engine::ModelKind::paper ? "`paper`" : "`surface`";
 }
 
-/// Prints the lateral steps of landings on all textures, with the gains of a study with these
+/// Prints the lateral steps at touchdown on all textures, with the gains of a study with these
 /// textures.
 void print_touchdowns(const Textures& textures, const engine::RenderingOptions& options) {
   constexpr int kLandings = 40;
@@ -48,22 +48,22 @@ void print_touchdowns(const Textures& textures, const engine::RenderingOptions& 
   std::vector<engine::FieldView> views;
   for (const auto& texture : textures) fields.push_back(make_texture_field(texture, options));
   for (const engine::TextureField& field : fields) views.push_back(field.view());
-  const std::vector<engine::Gains> gains = engine::choose_gains(views, options).of_field;
-  std::vector<double> rms, first, within;
+  const std::vector<engine::Gains> gains = engine::choose_gains(views, options).per_field;
+  std::vector<double> rms, first_steps, max_steps;
   for (std::size_t i = 0; i < views.size(); ++i) {
     const engine::RenderingModel model(views[i], options, gains[i]);
     for (std::uint64_t seed = 1; seed <= kLandings; ++seed) {
       const Touchdown landing = touch_down(
           model, views[i].geometry, {.speed_mm_s = kTypicalMmPerS, .time_s = 2.0, .seed = seed});
       rms.push_back(landing.rms_n);
-      first.push_back(landing.step_n);
-      within.push_back(landing.largest_step_n);
+      first_steps.push_back(landing.step_n);
+      max_steps.push_back(landing.largest_step_n);
     }
   }
   fmt::print("| {} | {} | {:.5f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} |\n",
              name_of(options.model), options.touchdown_ramp_n, gains.front().tangential_n,
-             median(rms), median(first), std::ranges::max(first), median(within),
-             std::ranges::max(within));
+             median(rms), median(first_steps), std::ranges::max(first_steps), median(max_steps),
+             std::ranges::max(max_steps));
 }
 
 void print_all_touchdowns(const Textures& textures) {
@@ -80,7 +80,7 @@ void print_all_touchdowns(const Textures& textures) {
   print_touchdowns(textures, surface);
 }
 
-/// The middle of a texture, 40 mm wide at the default pitch.
+/// \return the middle of a texture, 40 mm wide at the default pitch
 Plane<double> middle_of(const Plane<double>& texture) {
   constexpr int kSidePx = 200;
   Plane<double> part(kSidePx, kSidePx);

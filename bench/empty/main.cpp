@@ -1,4 +1,4 @@
-// The cost of starting any C++ program: the peer of touchtrial's start.
+// An empty program, whose start time is compared with touchtrial's.
 #include <string>
 
 int main(int argc, char** argv) {

@@ -12,7 +12,7 @@ namespace {
 
 using Taps = cv::Matx14f;
 
-/// {low, high}
+/// \return the low-pass and the high-pass filter
 std::array<Taps, 2> taps() {
   const double s = std::sqrt(3.0);
   const double scale = 4.0 * std::sqrt(2.0);
@@ -23,15 +23,15 @@ std::array<Taps, 2> taps() {
 
 const cv::Point kFirstTap(0, 0);
 
-/// Rows 0, 2, 4 .. as a view.
+/// \return a view of rows 0, 2, 4, ...
 cv::Mat even_rows(const cv::Mat& mat) {
   return cv::Mat(mat.rows / 2, mat.cols, mat.type(), mat.data, 2 * mat.step[0]);
 }
 
-/// Columns 0, 2, 4 ..: the first of every two samples, as if they were channels.
-void take_even_columns(const cv::Mat& mat, cv::Mat& to) {
+/// Copies columns 0, 2, 4, ... by treating pairs of samples as channels.
+void copy_even_columns(const cv::Mat& mat, cv::Mat& columns) {
   const cv::Mat pairs(mat.rows, mat.cols / 2, CV_32FC2, mat.data, mat.step[0]);
-  cv::extractChannel(pairs, to, 0);
+  cv::extractChannel(pairs, columns, 0);
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ cv::Mat fixed_order_mask(double order, int radius, bool enhanced) {
 }
 
 void OpenCvDaub4::run(const cv::Mat& image) {
-  if (way_ == Daub4Way::full_size) {
+  if (mode_ == Daub4Mode::full_size) {
     run_at_full_size(image);
   } else {
     run_by_rows(image);
@@ -67,21 +67,21 @@ void OpenCvDaub4::run_at_full_size(const cv::Mat& image) {
     // ll, lh, hl, hh: the first letter is the filter along x.
     cv::sepFilter2D(image, filtered_, CV_32F, filters[band / 2], filters[band % 2], kFirstTap, 0,
                     cv::BORDER_REFLECT);
-    take_even_columns(even_rows(filtered_), bands_[band]);
+    copy_even_columns(even_rows(filtered_), bands_[band]);
   }
 }
 
 void OpenCvDaub4::run_by_rows(const cv::Mat& image) {
   const auto filters = taps();
-  const cv::Matx<float, 1, 1> as_it_is(1.0F);
+  const cv::Matx<float, 1, 1> identity(1.0F);
   for (std::size_t along_y = 0; along_y < 2; ++along_y) {
-    cv::sepFilter2D(image, along_y_, CV_32F, as_it_is, filters[along_y], kFirstTap, 0,
+    cv::sepFilter2D(image, along_y_, CV_32F, identity, filters[along_y], kFirstTap, 0,
                     cv::BORDER_REFLECT);
-    const cv::Mat kept = even_rows(along_y_);
+    const cv::Mat even = even_rows(along_y_);
     for (std::size_t along_x = 0; along_x < 2; ++along_x) {
-      cv::sepFilter2D(kept, filtered_, CV_32F, filters[along_x], as_it_is, kFirstTap, 0,
+      cv::sepFilter2D(even, filtered_, CV_32F, filters[along_x], identity, kFirstTap, 0,
                       cv::BORDER_REFLECT);
-      take_even_columns(filtered_, bands_[2 * along_x + along_y]);
+      copy_even_columns(filtered_, bands_[2 * along_x + along_y]);
     }
   }
 }
@@ -118,13 +118,13 @@ void OpenCvRingSums::make_orders(const cv::Mat& image) {
 void OpenCvRingSums::pad(const cv::Mat& image, int radius) {
   cv::copyMakeBorder(image, padded_u8_, radius, radius, radius, radius, cv::BORDER_REFLECT);
   padded_u8_.convertTo(padded_, sum_type_);
-  image.convertTo(nine_, sum_type_, 9.0);
+  image.convertTo(image_times_9_, sum_type_, 9.0);
 }
 
-/// 8 (I - R_k).
+/// Computes 8 (I - R_k).
 void OpenCvRingSums::make_difference(int k, int radius) {
-  const int height = nine_.rows;
-  const int width = nine_.cols;
+  const int height = image_times_9_.rows;
+  const int width = image_times_9_.cols;
   const auto rows_at = [&](int dy) { return padded_.rowRange(radius + dy, radius + dy + height); };
   cv::add(rows_at(-k), rows_at(k), column_sums_);
   cv::add(column_sums_, rows_at(0), column_sums_);
@@ -134,14 +134,14 @@ void OpenCvRingSums::make_difference(int k, int radius) {
   cv::add(columns_at(-k), columns_at(k), ring_);
   cv::add(ring_, columns_at(0), ring_);
   if (sum_type_ == CV_32F) {
-    cv::subtract(nine_, ring_, difference_);
+    cv::subtract(image_times_9_, ring_, difference_);
   } else {
-    cv::subtract(nine_, ring_, ring_);
+    cv::subtract(image_times_9_, ring_, ring_);
     ring_.convertTo(difference_, CV_32F);
   }
 }
 
-/// T = v/8 (8 D_1 + a_2 (8 D_2 + ..)), a_k = (k - 1 - v) / k.
+/// Computes T = v/8 (8 D_1 + a_2 (8 D_2 + ...)), a_k = (k - 1 - v) / k.
 void OpenCvRingSums::make_texture(int radius) {
   make_difference(radius, radius);
   cv::swap(texture_, difference_);
@@ -154,10 +154,10 @@ void OpenCvRingSums::make_texture(int radius) {
   cv::multiply(texture_, orders_, texture_, 1.0 / 8.0);
 }
 
-double OpenCvRingSums::highest() const {
-  double highest = 0.0;
-  cv::minMaxLoc(texture_, nullptr, &highest);
-  return highest;
+double OpenCvRingSums::max_texture() const {
+  double max_value = 0.0;
+  cv::minMaxLoc(texture_, nullptr, &max_value);
+  return max_value;
 }
 
 }  // namespace touchtrial::bench

@@ -11,7 +11,7 @@ namespace touchtrial::bench {
 namespace {
 
 constexpr int kScales = 5;
-constexpr int kReach = 5;  // of the 11 x 11 window
+constexpr int kHalfWindow = 5;  // of the 11 x 11 window
 constexpr double kC1 = 0.01 * 255 * 0.01 * 255;
 constexpr double kC2 = 0.03 * 255 * 0.03 * 255;
 
@@ -19,10 +19,10 @@ cv::Mat counts_of(const cv::Mat& image, int dy, int dx) {
   cv::Mat counts = cv::Mat::zeros(256, 256, CV_32S);
   for (int y = std::max(0, -dy); y < image.rows - std::max(0, dy); ++y) {
     const auto* const row = image.ptr<std::uint8_t>(y);
-    const auto* const other = image.ptr<std::uint8_t>(y + dy);
+    const auto* const neighbour_row = image.ptr<std::uint8_t>(y + dy);
     for (int x = std::max(0, -dx); x < image.cols - std::max(0, dx); ++x) {
-      ++counts.at<int>(row[x], other[x + dx]);
-      ++counts.at<int>(other[x + dx], row[x]);
+      ++counts.at<int>(row[x], neighbour_row[x + dx]);
+      ++counts.at<int>(neighbour_row[x + dx], row[x]);
     }
   }
   return counts;
@@ -33,7 +33,8 @@ struct Moments {
   double variance = 0.0;
 };
 
-/// The moments of one level; the matrix is symmetric.
+/// \param p  symmetric matrix of probabilities
+/// \return mean and variance of the marginal distribution
 Moments moments_of(const cv::Mat& p) {
   Moments moments;
   double square = 0.0;
@@ -92,10 +93,12 @@ void OpenCvMsSsim::halve(cv::Mat& image) {
   cv::swap(image, half_);
 }
 
-/// Only the windows that lie inside the image.
-void OpenCvMsSsim::blur(const cv::Mat& from, cv::Mat& to) {
-  cv::GaussianBlur(from, blurred_, {2 * kReach + 1, 2 * kReach + 1}, 1.5);
-  blurred_(cv::Rect(kReach, kReach, from.cols - 2 * kReach, from.rows - 2 * kReach)).copyTo(to);
+/// Uses only windows inside the image.
+void OpenCvMsSsim::blur(const cv::Mat& source, cv::Mat& target) {
+  cv::GaussianBlur(source, blurred_, {2 * kHalfWindow + 1, 2 * kHalfWindow + 1}, 1.5);
+  blurred_(cv::Rect(kHalfWindow, kHalfWindow, source.cols - 2 * kHalfWindow,
+                    source.rows - 2 * kHalfWindow))
+      .copyTo(target);
 }
 
 OpenCvMsSsim::Means OpenCvMsSsim::means_of_scale(bool with_luminance) {
@@ -109,20 +112,20 @@ OpenCvMsSsim::Means OpenCvMsSsim::means_of_scale(bool with_luminance) {
   blur(product_, covariance_);
   cv::multiply(mean_a_, mean_a_, square_a_);
   cv::multiply(mean_b_, mean_b_, square_b_);
-  cv::multiply(mean_a_, mean_b_, both_);
-  cv::subtract(covariance_, both_, covariance_);
-  cv::add(variance_a_, variance_b_, below_);
+  cv::multiply(mean_a_, mean_b_, mean_product_);
+  cv::subtract(covariance_, mean_product_, covariance_);
+  cv::add(variance_a_, variance_b_, denominator_);
   cv::add(square_a_, square_b_, square_a_);
-  cv::subtract(below_, square_a_, below_);
-  covariance_.convertTo(above_, CV_32F, 2.0, kC2);
-  cv::add(below_, kC2, below_);
-  cv::divide(above_, below_, above_);
-  Means means{cv::mean(above_)[0], 1.0};
+  cv::subtract(denominator_, square_a_, denominator_);
+  covariance_.convertTo(numerator_, CV_32F, 2.0, kC2);
+  cv::add(denominator_, kC2, denominator_);
+  cv::divide(numerator_, denominator_, numerator_);
+  Means means{cv::mean(numerator_)[0], 1.0};
   if (with_luminance) {
-    both_.convertTo(above_, CV_32F, 2.0, kC1);
-    cv::add(square_a_, kC1, below_);
-    cv::divide(above_, below_, above_);
-    means.luminance = cv::mean(above_)[0];
+    mean_product_.convertTo(numerator_, CV_32F, 2.0, kC1);
+    cv::add(square_a_, kC1, denominator_);
+    cv::divide(numerator_, denominator_, numerator_);
+    means.luminance = cv::mean(numerator_)[0];
   }
   return means;
 }

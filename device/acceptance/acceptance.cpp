@@ -14,24 +14,24 @@ namespace {
 
 constexpr double kRestRunS = 4.0;
 constexpr double kPeakShare = 0.6;
-/// Of the continuous force, for the twelve seconds of a weight.
+/// A weight may need this share of the continuous force for its twelve seconds.
 constexpr double kWeightShare = 1.5;
-constexpr double kShakeMoreN = 0.4;   ///< beyond friction
-constexpr double kSoftestWall = 0.1;  ///< N/mm
+constexpr double kShakeExcessN = 0.4;  ///< force in excess of friction
+constexpr double kMinWall = 0.1;       ///< N/mm
 constexpr double kWallFactor = 1.3;
-constexpr double kStiffestWall = 1.0;  ///< where the maker states no limit
-constexpr double kStepsOfSwing = 3.0;
-constexpr double kNoisesOfSwing = 4.0;
+constexpr double kDefaultMaxWall = 1.0;  ///< N/mm, if the maker states no limit
+constexpr double kMinSwingSteps = 3.0;
+constexpr double kMinSwingNoises = 4.0;
 constexpr int kWarmMinutes = 20;
 constexpr double kMinuteS = 60.0;
 
 /// Ends an acceptance that must not continue.
-struct EndOfAcceptance {
-  std::string why;
+struct AcceptanceEnded {
+  std::string reason;
 };
 
-double stiffest_wall_of(const DeviceInfo& device) {
-  return device.max_stiffness_n_per_mm > 0.0 ? device.max_stiffness_n_per_mm : kStiffestWall;
+double max_wall_stiffness(const DeviceInfo& device) {
+  return device.max_stiffness_n_per_mm > 0.0 ? device.max_stiffness_n_per_mm : kDefaultMaxWall;
 }
 
 PushResult push_result(const AxisPush::Push& push, DeviceAxis axis, double sign) {
@@ -41,12 +41,12 @@ PushResult push_result(const AxisPush::Push& push, DeviceAxis axis, double sign)
   return {push.force_n, push.moved, along_mm, across_mm};
 }
 
-std::string push_words(const PushResult& push) {
+std::string push_text(const PushResult& push) {
   if (!push.moved) return fmt::format("no motion at {:.1f} N", push.force_n);
   return fmt::format("moved {:+.1f} mm at {:.1f} N", push.along_mm, push.force_n);
 }
 
-std::string words_of(const Measured& measured, int digits, const char* unit) {
+std::string measured_text(const Measured& measured, int digits, const char* unit) {
   return fmt::format("{:.{}f} +- {:.{}f} {}", measured.value, digits, measured.error, digits, unit);
 }
 
@@ -75,34 +75,35 @@ class Procedure {
 
   Acceptance run() {
     try {
-      listen();
+      measure_rest();
       push();
       stroke();
       weigh();
       shake();
       press();
-      if (options_.thermal) warm();
-    } catch (const EndOfAcceptance& end) {
-      missed("everything that follows", end.why);
+      if (options_.thermal) measure_warming();
+    } catch (const AcceptanceEnded& end) {
+      add_not_measured("all later steps", end.reason);
     } catch (const DeviceFailed& failed) {
       certificate_.fault = failed.fault + " in the run " + failed.run;
-      missed("everything that follows", "the device failed: " + certificate_.fault);
+      add_not_measured("all later steps", "the device failed: " + certificate_.fault);
     }
-    if (!options_.thermal) missed("force after twenty minutes", "not asked for (--thermal)");
+    if (!options_.thermal)
+      add_not_measured("force after twenty minutes", "not requested (--thermal)");
     apply_force_scale();
     return {std::move(certificate_), std::move(curves_)};
   }
 
  private:
-  void missed(const std::string& what, const std::string& why) {
-    certificate_.not_measured.push_back({what, why});
-    person_.show(what + ": not measured: " + why);
+  void add_not_measured(const std::string& measurement, const std::string& reason) {
+    certificate_.not_measured.push_back({measurement, reason});
+    person_.show(measurement + ": not measured: " + reason);
   }
 
   /// \return whether the run may begin; if not, the certificate records that it was skipped
-  bool consents(const Prompt& prompt, const std::string& what) {
-    if (runs_.consents(prompt)) return true;
-    missed(what, std::string(kLeftOut));
+  bool obtain_consent(const Prompt& prompt, const std::string& measurement) {
+    if (runs_.obtain_consent(prompt)) return true;
+    add_not_measured(measurement, std::string(kLeftOut));
     return false;
   }
 
@@ -121,72 +122,76 @@ class Procedure {
   [[nodiscard]] double step_mm() const {
     return certificate_.step_mm ? certificate_.step_mm->value : 0.0;
   }
-  /// Smaller swings are ignored.
+  /// \return the minimum swing that counts as oscillation
   [[nodiscard]] double min_swing_mm() const {
     const double noise_mm = certificate_.rest ? certificate_.rest->noise_mm : 0.0;
-    return std::max({kMinSwingMm, kStepsOfSwing * step_mm(), kNoisesOfSwing * noise_mm});
+    return std::max({kMinSwingMm, kMinSwingSteps * step_mm(), kMinSwingNoises * noise_mm});
   }
-  static std::string on(DeviceAxis axis) { return " on axis " + std::string(name_of(axis)); }
+  static std::string axis_suffix(DeviceAxis axis) {
+    return " on axis " + std::string(name_of(axis));
+  }
 
-  void listen() {
-    if (consents({"rest",
-                  Grip::lying,
-                  {},
-                  "Let the handle lie or hold it still; no force acts for 4 s."},
-                 "noise at rest")) {
-      Listening rest(kRestRunS);
+  void measure_rest() {
+    if (obtain_consent({"rest",
+                        Grip::lying,
+                        {},
+                        "Leave the handle lying or hold it still; no force acts for 4 s."},
+                       "noise at rest")) {
+      PassiveRun rest(kRestRunS);
       runs_.measure("rest", rest);
       certificate_.rest = rest_figures(rest.samples());
       if (certificate_.rest) {
         person_.show(fmt::format("at rest: noise {:.4f} mm, drift {:.3f} mm",
                                  certificate_.rest->noise_mm, certificate_.rest->drift_mm));
       } else {
-        missed("noise at rest", "the run ended early");
+        add_not_measured("noise at rest", "the run ended early");
       }
     }
     const ValueOrReason<Measured> step = runs_.encoder_step();
     certificate_.step_mm = step.value;
     if (step.value) {
-      person_.show("encoder step: " + words_of(*step.value, 4, "mm"));
+      person_.show("encoder step: " + measured_text(*step.value, 4, "mm"));
     } else {
-      missed("encoder step", step.why);
+      add_not_measured("encoder step", step.reason);
     }
   }
 
   void push() {
     for (const DeviceAxis axis : kDeviceAxes) {
-      if (!consents({"push", Grip::holding, axis,
-                     fmt::format("Hold the handle lightly in the middle, so that it can give way. "
-                                 "It is pushed along axis {} by at most {:.1f} N, in steps of 0.1 "
-                                 "N, until it has moved 2 mm; then the other way.",
-                                 name_of(axis), forces_.push_n)},
-                    "sign" + on(axis))) {
-        throw EndOfAcceptance{"no pull before the signs of all axes are known"};
+      if (!obtain_consent(
+              {"push", Grip::holding, axis,
+               fmt::format("Hold the handle lightly in the middle, so that it can give way. "
+                           "It is pushed along axis {} by at most {:.1f} N, in steps of 0.1 "
+                           "N, until it has moved 2 mm; then in the opposite direction.",
+                           name_of(axis), forces_.push_n)},
+              "sign" + axis_suffix(axis))) {
+        throw AcceptanceEnded{"later steps require the signs of all axes"};
       }
       AxisPush run(axis, forces_.push_n);
       runs_.measure("push " + std::string(name_of(axis)), run);
-      take_push(axis, run);
+      add_push(axis, run);
     }
   }
 
-  void take_push(DeviceAxis axis, const AxisPush& run) {
+  void add_push(DeviceAxis axis, const AxisPush& run) {
     const AxisPush::Figures& figures = run.figures();
     AxisResult& result = result_of(axis);
     if (figures.plus) result.plus = push_result(*figures.plus, axis, 1.0);
     if (figures.minus) result.minus = push_result(*figures.minus, axis, -1.0);
     const std::string name(name_of(axis));
-    if (result.plus) person_.show("push +" + name + ": " + push_words(*result.plus));
-    if (result.minus) person_.show("push -" + name + ": " + push_words(*result.minus));
+    if (result.plus) person_.show("push +" + name + ": " + push_text(*result.plus));
+    if (result.minus) person_.show("push -" + name + ": " + push_text(*result.minus));
     const bool may_continue = result.plus && result.minus && result.plus->moved &&
                               result.minus->moved &&
                               result.plus->along_mm > result.plus->across_mm &&
                               result.minus->along_mm > result.minus->across_mm;
     if (may_continue) return;
-    if (run.ran_away())
-      throw EndOfAcceptance{"the handle ran more than 15 mm away from where its push began" +
-                            on(axis)};
-    if (!figures.reached_rest) throw EndOfAcceptance{"the handle never came to rest" + on(axis)};
-    throw EndOfAcceptance{"the handle does not follow a small force" + on(axis)};
+    if (run.has_run_away())
+      throw AcceptanceEnded{"the handle moved more than 15 mm from the start of its push" +
+                            axis_suffix(axis)};
+    if (!figures.reached_rest)
+      throw AcceptanceEnded{"the handle never came to rest" + axis_suffix(axis)};
+    throw AcceptanceEnded{"the handle does not follow a small force" + axis_suffix(axis)};
   }
 
   void stroke() {
@@ -194,7 +199,7 @@ class Procedure {
       const ValueOrReason<StrokeFigures> strokes =
           runs_.empty_strokes("strokes", axis, support_n_, step_mm());
       if (!strokes.value) {
-        missed("friction and load" + on(axis), strokes.why);
+        add_not_measured("friction and load" + axis_suffix(axis), strokes.reason);
         continue;
       }
       AxisResult& result = result_of(axis);
@@ -204,7 +209,7 @@ class Procedure {
           support_n_ + (*result.load_n - dot(support_n_, direction_of(axis))) * direction_of(axis);
       curves_of(axis).loop = strokes.value->loop;
       person_.show(fmt::format("axis {}: friction {}, the handle's own load {:.2f} N",
-                               name_of(axis), words_of(*result.friction_n, 2, "N"),
+                               name_of(axis), measured_text(*result.friction_n, 2, "N"),
                                *result.load_n));
     }
   }
@@ -212,134 +217,138 @@ class Procedure {
   void weigh() {
     for (const DeviceAxis axis : kDeviceAxes) {
       AxisResult& result = result_of(axis);
-      const std::string what = "size of the force" + on(axis);
+      const std::string measurement = "size of the force" + axis_suffix(axis);
       if (!result.load_n) {
-        missed(what, "the empty handle was not measured");
+        add_not_measured(measurement, "the empty handle was not measured");
         continue;
       }
       const EmptyHandle empty{support_n_, *result.load_n, result.friction_n->value};
-      const ValueOrReason<WeighResult> weighed = runs_.weigh("weights", axis, empty, step_mm());
-      result.weight = weighed.value;
-      if (!weighed.value) missed(what, weighed.why);
+      const ValueOrReason<WeighResult> weighing = runs_.weigh("weights", axis, empty, step_mm());
+      result.weight = weighing.value;
+      if (!weighing.value) add_not_measured(measurement, weighing.reason);
     }
   }
 
   void shake() {
     for (const DeviceAxis axis : kDeviceAxes) {
-      const std::string what = "mass and delay" + on(axis);
+      const std::string measurement = "mass and delay" + axis_suffix(axis);
       AxisResult& result = result_of(axis);
       if (!result.friction_n) {
-        missed(what, "friction was not measured, which determines how hard to push");
+        add_not_measured(measurement, "the push depends on friction, which was not measured");
         continue;
       }
-      const double push_n = std::min(result.friction_n->value + kShakeMoreN, forces_.push_n);
-      if (!consents({"shake", Grip::free, axis,
-                     fmt::format("Hold the handle in the middle. Let go slowly within 2 s of the "
-                                 "start: it is pushed to and fro along axis {} by {:.1f} N for 12 "
-                                 "s. Keep clear of it.",
-                                 name_of(axis), push_n)},
-                    what)) {
+      const double push_n = std::min(result.friction_n->value + kShakeExcessN, forces_.push_n);
+      if (!obtain_consent(
+              {"shake", Grip::free, axis,
+               fmt::format("Hold the handle in the middle. Let go slowly within 2 s of the "
+                           "start: it is pushed to and fro along axis {} by {:.1f} N for 12 "
+                           "s. Keep clear of it.",
+                           name_of(axis), push_n)},
+              measurement)) {
         result.delay_left_out = true;
         continue;
       }
       ShakenStrokes run(axis, support_n_, push_n, forces_.gains, forces_.hold_n);
       runs_.measure("shake " + std::string(name_of(axis)), run);
-      const ValueOrReason<ShakeFigures> shaken =
+      const ValueOrReason<ShakeFigures> shaking =
           shake_figures(run, result.friction_n->value, step_mm());
-      if (!shaken.value) {
-        missed(what, shaken.why);
+      if (!shaking.value) {
+        add_not_measured(measurement, shaking.reason);
         continue;
       }
-      take_shake(*shaken.value, result);
+      add_shake(*shaking.value, result);
     }
   }
 
-  void take_shake(const ShakeFigures& figures, AxisResult& result) {
+  void add_shake(const ShakeFigures& figures, AxisResult& result) {
     result.mass_kg = figures.mass_kg;
     result.viscous_n_s_per_m = figures.viscous_n_s_per_m;
-    // Slow strokes take what damping adds at their speed for friction.
+    // The friction of slow strokes includes damping at their speed.
     result.friction_n->value -=
         0.001 * SlowStrokes::kSpeedMmS * std::max(figures.viscous_n_s_per_m.value, 0.0);
-    std::string no_delay = figures.no_delay;
+    std::string no_delay_reason = figures.no_delay_reason;
     if (figures.delay_ms && verdict_on_delay(*figures.delay_ms) == DelayVerdict::unclear) {
-      no_delay =
-          "unclear: " + words_of(*figures.delay_ms, 1, "ms") +
-          "; slow motors or soft arms round the turns of the push: switch off filters of the "
-          "force in driver and amplifier, tighten the arms, and shake it again";
+      no_delay_reason =
+          "unclear: " + measured_text(*figures.delay_ms, 1, "ms") +
+          "; slow motors or soft arms round the path at reversals: switch off force filters in "
+          "driver and amplifier, tighten the arms, and repeat the step shake";
     } else {
       result.delay_ms = figures.delay_ms;
     }
-    curves_of(result.axis).by_delay = figures.by_delay;
+    curves_of(result.axis).bend_by_delay = figures.bend_by_delay;
     person_.show(fmt::format("axis {}: mass {}, {:.0f} % of the motion unexplained",
-                             name_of(result.axis), words_of(figures.mass_kg, 3, "kg"),
+                             name_of(result.axis), measured_text(figures.mass_kg, 3, "kg"),
                              100.0 * figures.unexplained));
     if (result.delay_ms) {
       person_.show(fmt::format("axis {}: delay {}", name_of(result.axis),
-                               words_of(*result.delay_ms, 1, "ms")));
+                               measured_text(*result.delay_ms, 1, "ms")));
     } else {
-      missed("delay" + on(result.axis), no_delay);
+      add_not_measured("delay" + axis_suffix(result.axis), no_delay_reason);
     }
   }
 
   void press() {
-    const double stiffest = stiffest_wall_of(info_);
+    const double max_stiffness = max_wall_stiffness(info_);
     WallResult wall;
     wall.ended = info_.max_stiffness_n_per_mm > 0.0 ? "the maker's limit" : "the program's limit";
-    double stiffness = std::min(kSoftestWall, stiffest);
-    bool tried = false;
+    double stiffness = std::min(kMinWall, max_stiffness);
+    bool has_trial = false;
     while (true) {
       const Prompt prompt{
           "wall", Grip::pressing, DeviceAxis::y,
           fmt::format("Hold the handle lightly in the middle. 3 mm below it is a floor of {:.2f} "
-                      "N/mm: press on it as in a stroke for 6 s, and do not lift the handle. It is "
-                      "switched off if it begins to swing or throws the handle up again and again.",
+                      "N/mm: press on it as in a stroke for 6 s, and do not lift the handle. The "
+                      "floor is switched off if it oscillates or throws the handle up repeatedly.",
                       stiffness)};
-      if (!runs_.consents(prompt)) {
+      if (!runs_.obtain_consent(prompt)) {
         wall.ended = kLeftOut;
         break;
       }
       WallTrial run(stiffness, min_swing_mm(), forces_.hold_n);
       runs_.measure("wall", run);
-      if (run.oscillated()) {
+      if (run.has_oscillated()) {
         wall.oscillates_n_per_mm = stiffness;
         wall.ended = "oscillation";
-        tried = true;
+        has_trial = true;
         break;
       }
       if (run.contact_s() < kMinContactS) {
         wall.ended = "the floor was not pressed";
         break;
       }
-      tried = true;
+      has_trial = true;
       wall.stable_n_per_mm = stiffness;
-      if (stiffness >= stiffest) break;
-      stiffness = std::min(stiffness * kWallFactor, stiffest);
+      if (stiffness >= max_stiffness) break;
+      stiffness = std::min(stiffness * kWallFactor, max_stiffness);
     }
-    if (!tried) {
-      missed("stiffest wall", wall.ended);
+    if (!has_trial) {
+      add_not_measured("stiffest wall", wall.ended);
       return;
     }
     certificate_.wall = wall;
-    person_.show(fmt::format("wall: stable at {:.2f} N/mm{}; ended by {}", wall.stable_n_per_mm,
-                             wall.oscillates_n_per_mm > 0.0
-                                 ? fmt::format(", swings at {:.2f} N/mm", wall.oscillates_n_per_mm)
-                                 : "",
-                             wall.ended));
+    person_.show(
+        fmt::format("wall: stable at {:.2f} N/mm{}; ended by {}", wall.stable_n_per_mm,
+                    wall.oscillates_n_per_mm > 0.0
+                        ? fmt::format(", oscillates at {:.2f} N/mm", wall.oscillates_n_per_mm)
+                        : "",
+                    wall.ended));
   }
 
-  /// Holds a load along y for twenty minutes; the change of its force shows what warm motors lose.
-  void warm() {
-    const std::string what = "force after twenty minutes";
+  /// Holds a load along y for twenty minutes; the change of its force shows the effect of warm
+  /// motors.
+  void measure_warming() {
+    const std::string measurement = "force after twenty minutes";
     AxisResult& result = result_of(DeviceAxis::y);
     if (!result.weight) {
-      missed(what, "needs the weight on axis y");
+      add_not_measured(measurement, "needs the weight on axis y");
       return;
     }
     WarmResult warm;
-    if (!consents({"thermal", Grip::loaded, DeviceAxis::y,
-                   "Hang the weight of axis y on the handle again, and let go within 2 s of the "
-                   "start of each run. It hangs for twenty minutes; stay with it."},
-                  what)) {
+    if (!obtain_consent(
+            {"thermal", Grip::loaded, DeviceAxis::y,
+             "Hang the weight of axis y on the handle again, and let go within 2 s of the "
+             "start of each run. It hangs for twenty minutes; do not leave it."},
+            measurement)) {
       return;
     }
     warm.before_c = person_.temperature_c("temperature of the motors' housing in degrees Celsius");
@@ -350,14 +359,14 @@ class Procedure {
       runs_.measure("warm " + std::to_string(minute + 1), run);
       const ValueOrReason<StrokeFigures> strokes = stroke_figures(run, step_mm());
       if (!strokes.value) {
-        missed(what, strokes.why);
+        add_not_measured(measurement, strokes.reason);
         return;
       }
       warm.after_n = strokes.value->load_n.value;
       if (minute == 0) warm.before_n = warm.after_n;
     }
     warm.after_c = person_.temperature_c("temperature of the motors' housing now");
-    person_.show(fmt::format("the load took {:.3f} N at first, and {:.3f} N after twenty minutes",
+    person_.show(fmt::format("the load needed {:.3f} N at first, {:.3f} N after twenty minutes",
                              warm.before_n, warm.after_n));
     certificate_.warm = warm;
   }
@@ -368,8 +377,9 @@ class Procedure {
       const auto scale = result.scale();
       if (!scale) {
         if (result.friction_n) {
-          missed("newtons at the handle" + on(result.axis),
-                 "friction and mass count commanded newtons, as the size of the force is unknown");
+          add_not_measured(
+              "newtons at the handle" + axis_suffix(result.axis),
+              "the size of the force is unknown, so friction and mass are in commanded newtons");
         }
         continue;
       }
@@ -385,7 +395,7 @@ class Procedure {
   DeviceInfo info_;
   AcceptanceForces forces_;
   HandleRuns runs_;
-  Vec3 support_n_;  ///< commanded, for the handle's own load
+  Vec3 support_n_;  ///< commanded force that supports the empty handle
   Certificate certificate_;
   std::vector<AxisCurves> curves_;
 };
@@ -393,11 +403,12 @@ class Procedure {
 }  // namespace
 
 AcceptanceForces acceptance_forces(const DeviceInfo& device, const SafetyLimits& limits) noexcept {
-  const SafetyLimits all = limits_on(device, limits);
-  const double continuous_n =
-      all.continuous_force_n > 0.0 ? all.continuous_force_n : all.max_force_n;
+  const SafetyLimits device_limits = limits_on(device, limits);
+  const double continuous_n = device_limits.continuous_force_n > 0.0
+                                  ? device_limits.continuous_force_n
+                                  : device_limits.max_force_n;
   AcceptanceForces forces;
-  forces.hold_n = kPeakShare * all.max_force_n;
+  forces.hold_n = kPeakShare * device_limits.max_force_n;
   forces.push_n = std::min({AxisPush::kMaxN, continuous_n, forces.hold_n});
   forces.weight_n = std::min(forces.hold_n, kWeightShare * continuous_n);
   if (device.max_stiffness_n_per_mm > 0.0) {
@@ -405,7 +416,7 @@ AcceptanceForces acceptance_forces(const DeviceInfo& device, const SafetyLimits&
         std::min(forces.gains.spring_n_per_mm, 0.75 * device.max_stiffness_n_per_mm);
   }
   forces.gains.damper_n_s_per_mm =
-      within_share(forces.gains.damper_n_s_per_mm, device.max_damping_n_s_per_mm);
+      limit_to_share(forces.gains.damper_n_s_per_mm, device.max_damping_n_s_per_mm);
   return forces;
 }
 

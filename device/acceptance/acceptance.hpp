@@ -1,5 +1,5 @@
-/// \file The acceptance of a device: the order of runs, what a person does in each, and the
-///   results. Source: docs/devices/acceptance.md.
+/// \file The acceptance of a device: its steps, the person's part in each, and the results. Source:
+///   docs/devices/acceptance.md.
 #pragma once
 
 #include "device/acceptance/certificate.hpp"
@@ -17,19 +17,19 @@
 
 namespace touchtrial::device {
 
-/// The steps in order, by name, so that a person can skip them. Later steps require `push`: a hold
-/// pulls a device with a wrong sign away from its place.
+/// The names of the steps, in order; a person can skip steps by name. Later steps require `push`,
+/// because with a wrong sign, holding would push the handle away.
 inline constexpr std::array<std::string_view, 7> kAcceptanceSteps = {
     "rest", "steps", "push", "strokes", "weights", "shake", "wall"};
 
-/// What a person does with the handle during a run.
+/// A person's action on the handle during a run.
 enum class Grip {
-  lying,     ///< none: it lies or is held still
+  lying,     ///< leaves it lying or holds it still
   moving,    ///< moves it slowly along all axes
-  carrying,  ///< carries it by some centimetres in the axis' direction, and holds it there
-  holding,   ///< holds it lightly, so that it can give way
+  carrying,  ///< moves it some centimetres along the axis and holds it there
+  holding,   ///< holds it lightly, so that it can yield
   free,      ///< brings it to the middle and lets go
-  loaded,    ///< the same with a weight on it
+  loaded,    ///< the same, with a weight on the handle
   pressing,  ///< presses it down on a floor
   guarding,  ///< holds it firmly and watches
 };
@@ -37,24 +37,24 @@ enum class Grip {
 /// The instruction before a run.
 struct Prompt {
   std::string_view step;  ///< one of kAcceptanceSteps, or "thermal"
-  Grip stance = Grip::lying;
-  DeviceAxis axis = DeviceAxis::y;  ///< of the run, where it has one
+  Grip grip = Grip::lying;
+  DeviceAxis axis = DeviceAxis::y;  ///< of the run, if it has one
   std::string text;                 ///< for the person
 };
 
 enum class Consent {
   go,
-  skip,  ///< this run, or the rest of a row of trials
+  skip,  ///< this run, or the remaining trials of a series
 };
 
-/// The person, or a simulated one. Every function may throw to end the acceptance.
+/// A real or simulated person. Every function may throw to end the acceptance.
 class AcceptancePerson {
  public:
   virtual ~AcceptancePerson() = default;
   /// Asks for the grip, and for consent to the run. No force acts before it returns.
   [[nodiscard]] virtual Consent ready(const Prompt& prompt) = 0;
-  /// Asks for a force along an axis: a weight, or the reading of a spring scale.
-  /// \return N, in the range; nothing: the person has none
+  /// Requests a weight, or a force measured by a spring scale, along an axis.
+  /// \return N, in the range; nothing: the person has no weight
   [[nodiscard]] virtual std::optional<double> weight_n(DeviceAxis axis, double min_n,
                                                        double max_n) = 0;
   /// \return a temperature in degrees Celsius; nothing: there is no thermometer
@@ -64,21 +64,21 @@ class AcceptancePerson {
   virtual void show(const std::string& result) = 0;
 };
 
-/// The device under its servo.
+/// A device and its servo.
 class AcceptanceBench {
  public:
   virtual ~AcceptanceBench() = default;
   [[nodiscard]] virtual DeviceInfo info() const = 0;
-  /// They apply to every run.
+  /// \return the limits of every run
   [[nodiscard]] virtual SafetyLimits limits() const = 0;
-  /// Sets a stricter force limit than the bench's own for later runs.
+  /// Sets a stricter force limit for later runs.
   /// \param max_n  > 0
   virtual void limit_force(double max_n) = 0;
-  /// \param name  of the run, at most 8 letters
+  /// \param name  of the run, at most 8 characters
   /// \throws touchtrial::Error if a person or a signal stopped it
   [[nodiscard]] virtual ServoReport run(const std::string& name, Measurement& measurement) = 0;
   /// The same, while the system suspends the program for two seconds.
-  /// \return nothing if that is not possible
+  /// \return nothing if suspending is not possible
   [[nodiscard]] virtual std::optional<ServoReport> run_suspended(Measurement& /*measurement*/) {
     return std::nullopt;
   }
@@ -89,11 +89,11 @@ struct AcceptanceOptions {
   bool thermal = false;                       ///< twenty minutes under a load
 };
 
-/// Curves of one axis, for pictures.
+/// Curves of one axis, for plots.
 struct AxisCurves {
   DeviceAxis axis = DeviceAxis::y;
-  std::vector<std::pair<double, double>> loop{};      ///< StrokeFigures::loop
-  std::vector<std::pair<double, double>> by_delay{};  ///< ShakeFigures::by_delay
+  std::vector<std::pair<double, double>> loop{};           ///< StrokeFigures::loop
+  std::vector<std::pair<double, double>> bend_by_delay{};  ///< ShakeFigures::bend_by_delay
 };
 
 struct Acceptance {
@@ -101,18 +101,18 @@ struct Acceptance {
   std::vector<AxisCurves> curves;
 };
 
-/// The greatest force of a push, of a shake and of a weight on this device.
+/// Maximum forces of an acceptance on one device.
 struct AcceptanceForces {
-  double push_n = 0.0;
-  double hold_n = 0.0;    ///< of the norm while the handle is held: 60 % of the peak
+  double push_n = 0.0;    ///< of a push or a shake
+  double hold_n = 0.0;    ///< norm while the handle is held: 60 % of the peak force
   double weight_n = 0.0;  ///< of a weight and the handle's own load together
-  HoldGains gains;        ///< below the greatest stiffness and damping that the maker states
+  HoldGains gains;        ///< below the maker's maximum stiffness and damping
 };
 [[nodiscard]] AcceptanceForces acceptance_forces(const DeviceInfo& device,
                                                  const SafetyLimits& limits) noexcept;
 
-/// Runs the acceptance. A wrong sign or a fault ends it at once, with a certificate that states
-/// this.
+/// Runs the acceptance. A wrong sign or a fault ends it at once; the certificate then states the
+/// reason.
 /// \throws what bench and person throw
 [[nodiscard]] Acceptance accept_device(AcceptanceBench& bench, AcceptancePerson& person,
                                        const AcceptanceOptions& options);

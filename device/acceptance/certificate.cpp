@@ -22,42 +22,43 @@ std::string axis_words(const AxisResult& axis) {
   return "axis " + std::string(name_of(axis.axis));
 }
 
-void judge_push(const AxisResult& axis, const std::optional<PushResult>& push, const char* way,
-                std::vector<std::string>& failures) {
+void check_push(const AxisResult& axis, const std::optional<PushResult>& push,
+                const char* direction, std::vector<std::string>& failures) {
   const std::string where = axis_words(axis) + ": ";
   if (!push) {
-    failures.push_back(where + "the push " + way + " was not measured");
+    failures.push_back(where + "the push " + direction + " was not measured");
   } else if (!push->moved) {
     failures.push_back(
-        fmt::format("{}the handle did not move at {:.1f} N {}", where, push->force_n, way));
+        fmt::format("{}the handle did not move at {:.1f} N {}", where, push->force_n, direction));
   } else if (push->along_mm <= 0.0) {
     failures.push_back(
         fmt::format("{}the handle moved against a force of {:.1f} N {}: the sign is "
                     "wrong",
-                    where, push->force_n, way));
+                    where, push->force_n, direction));
   } else if (push->across_mm > push->along_mm) {
     failures.push_back(
         fmt::format("{}the handle moved across a force of {:.1f} N {}: axes are exchanged", where,
-                    push->force_n, way));
+                    push->force_n, direction));
   }
 }
 
-void judge_above(const std::string& where, const char* what, double value, double limit,
-                 const char* unit, std::vector<std::string>& failures) {
+void check_max(const std::string& where, const char* quantity, double value, double limit,
+               const char* unit, std::vector<std::string>& failures) {
   if (value <= limit * (1.0 + kEqualShare)) return;
-  failures.push_back(
-      fmt::format("{}{} is {:.3g} {}, more than {:g} {}", where, what, value, unit, limit, unit));
+  failures.push_back(fmt::format("{}{} is {:.3g} {}, more than {:g} {}", where, quantity, value,
+                                 unit, limit, unit));
 }
 
-/// \return ": " and the reason, if one was noted for this axis
+/// \return ": " and the reason, if one is recorded for this axis
 std::string reason_for_no_delay(DeviceAxis axis, const std::vector<NotMeasured>& not_measured) {
-  const std::string what = "delay on axis " + std::string(name_of(axis));
-  const auto found = std::ranges::find_if(
-      not_measured, [&](const NotMeasured& one) { return one.what.ends_with(what); });
-  return found == not_measured.end() ? "" : ": " + found->why;
+  const std::string measurement = "delay on axis " + std::string(name_of(axis));
+  const auto found = std::ranges::find_if(not_measured, [&](const NotMeasured& entry) {
+    return entry.measurement.ends_with(measurement);
+  });
+  return found == not_measured.end() ? "" : ": " + found->reason;
 }
 
-void judge_delay(const AxisResult& axis, const std::vector<NotMeasured>& not_measured,
+void check_delay(const AxisResult& axis, const std::vector<NotMeasured>& not_measured,
                  std::vector<std::string>& failures) {
   const std::string where = axis_words(axis) + ": ";
   if (!axis.delay_ms) {
@@ -67,33 +68,32 @@ void judge_delay(const AxisResult& axis, const std::vector<NotMeasured>& not_mea
     return;
   }
   const Measured& delay = *axis.delay_ms;
-  const auto refuse = [&](const char* why) {
+  const auto add_failure = [&](const char* reason) {
     failures.push_back(fmt::format("{}the delay is {:.3g} +- {:.2g} ms, {} {:g} ms", where,
-                                   delay.value, delay.error, why, kMaxDelayMs));
+                                   delay.value, delay.error, reason, kMaxDelayMs));
   };
   switch (verdict_on_delay(delay)) {
     case DelayVerdict::below:
       break;
     case DelayVerdict::above:
-      refuse("more than");
+      add_failure("more than");
       break;
     case DelayVerdict::not_shown:
-      refuse("not proven to be at most");
+      add_failure("not proven to be at most");
       break;
     case DelayVerdict::unclear:
-      refuse("too uncertain to be at most");
+      add_failure("too uncertain to be at most");
       break;
   }
 }
 
-/// \param force_scale  in force on this axis
-void judge_axis_result(const AxisResult& axis, double force_scale,
-                       const std::vector<NotMeasured>& not_measured,
-                       std::vector<std::string>& failures) {
+/// \param force_scale  of the device settings, on this axis
+void check_axis(const AxisResult& axis, double force_scale,
+                const std::vector<NotMeasured>& not_measured, std::vector<std::string>& failures) {
   const std::string where = axis_words(axis) + ": ";
-  judge_push(axis, axis.plus, "along it", failures);
+  check_push(axis, axis.plus, "along it", failures);
   if (axis.plus && axis.plus->moved && axis.plus->along_mm > 0.0) {
-    judge_push(axis, axis.minus, "against it", failures);
+    check_push(axis, axis.minus, "against it", failures);
   }
   if (const auto scale = axis.scale()) {
     if (std::abs(scale->value - 1.0) > kForceTolerance + 0.01 * kEqualPercent) {
@@ -104,15 +104,14 @@ void judge_axis_result(const AxisResult& axis, double force_scale,
           where, 100.0 * scale->value, 100.0 * kForceTolerance, force_scale * scale->value));
     }
   } else {
-    failures.push_back(where + "the size of its force was not measured");
+    failures.push_back(where + "the size of the force was not measured");
   }
   if (axis.friction_n) {
-    judge_above(where, "friction", axis.friction_n->value, kMaxFrictionN, "N", failures);
+    check_max(where, "friction", axis.friction_n->value, kMaxFrictionN, "N", failures);
   }
-  judge_delay(axis, not_measured, failures);
+  check_delay(axis, not_measured, failures);
 }
 
-/// Long names are cut.
 std::string identity_words(const std::string& driver, const std::string& model,
                            const std::string& serial) {
   return in_quotes(driver) + (model.empty() ? "" : ", model " + in_quotes(model)) +
@@ -124,7 +123,7 @@ std::string identity_words(const std::string& driver, const std::string& model,
 std::optional<Measured> AxisResult::scale() const {
   if (!weight || !(weight->measured_n > 0.0)) return std::nullopt;
   const double scale = weight->expected_n / weight->measured_n;
-  // Two hundredths for the weight itself, the string and the pulley.
+  // An error of 2 % for the weight, the string and the pulley.
   return Measured{scale, scale * (weight->error_n / weight->measured_n + 0.02)};
 }
 
@@ -139,13 +138,13 @@ std::vector<std::string> Certificate::failures() const {
   std::vector<std::string> failures;
   if (!fault.empty()) failures.push_back("the device failed: " + fault);
   if (rest) {
-    judge_above("at rest: ", "noise", rest->noise_mm, kMaxNoiseMm, "mm", failures);
-    judge_above("at rest: ", "drift", rest->drift_mm, kMaxDriftMm, "mm", failures);
+    check_max("at rest: ", "noise", rest->noise_mm, kMaxNoiseMm, "mm", failures);
+    check_max("at rest: ", "drift", rest->drift_mm, kMaxDriftMm, "mm", failures);
   } else {
     failures.emplace_back("noise at rest was not measured");
   }
   if (step_mm) {
-    judge_above("", "the encoder step", step_mm->value, kMaxStepMm, "mm", failures);
+    check_max("", "the encoder step", step_mm->value, kMaxStepMm, "mm", failures);
   }
   for (const DeviceAxis axis : kDeviceAxes) {
     const auto found = std::ranges::find(axes, axis, &AxisResult::axis);
@@ -153,7 +152,7 @@ std::vector<std::string> Certificate::failures() const {
       failures.push_back("axis " + std::string(name_of(axis)) + ": was not measured");
     } else {
       const double force_scale = dot(scale.force, direction_of(axis));
-      judge_axis_result(*found, force_scale, not_measured, failures);
+      check_axis(*found, force_scale, not_measured, failures);
     }
   }
   if (wall && wall->oscillates_n_per_mm > 0.0 && wall->stable_n_per_mm <= 0.0) {
@@ -161,8 +160,8 @@ std::vector<std::string> Certificate::failures() const {
                                    wall->oscillates_n_per_mm));
   }
   if (warm && std::abs(warm->before_n) > 0.0) {
-    judge_above("", "the change of the load's force over twenty minutes",
-                std::abs(warm->after_n / warm->before_n - 1.0), kMaxWarmDrift, "of it", failures);
+    check_max("", "the change of the load's force over twenty minutes",
+              std::abs(warm->after_n / warm->before_n - 1.0), kMaxWarmDrift, "of it", failures);
   }
   return failures;
 }
@@ -179,10 +178,10 @@ std::optional<Measured> Certificate::mean_of(std::optional<Measured> AxisResult:
   Measured sum;
   int n = 0;
   for (const AxisResult& axis : axes) {
-    const std::optional<Measured>& one = axis.*part;
-    if (!one) continue;
-    sum.value += one->value;
-    sum.error += one->error;
+    const std::optional<Measured>& measured = axis.*part;
+    if (!measured) continue;
+    sum.value += measured->value;
+    sum.error += measured->error;
     ++n;
   }
   if (n == 0) return std::nullopt;
@@ -193,9 +192,9 @@ std::string check_certificate(const Certificate& certificate, const DeviceInfo& 
                               std::chrono::sys_seconds now) {
   const std::string remedy = "; run touchtrial device accept " + device.name;
   if (!certificate.emulated.empty()) {
-    throw DeviceError(one_line(device.name + ": its certificate is of a rehearsal on an emulated " +
-                               in_quotes(certificate.emulated) + ", which proves no device" +
-                               remedy));
+    throw DeviceError(
+        one_line(device.name + ": its certificate is from a rehearsal on an emulated " +
+                 in_quotes(certificate.emulated) + ", which does not test a device" + remedy));
   }
   if (certificate.driver != device.name || certificate.serial != device.serial ||
       certificate.model != device.model) {
@@ -206,7 +205,7 @@ std::string check_certificate(const Certificate& certificate, const DeviceInfo& 
   }
   if (certificate.scale != device.scale) {
     throw DeviceError(device.name + ": its certificate was made with " +
-                      scale_text(certificate.scale) + ", and the device settings have " +
+                      scale_text(certificate.scale) + ", but the device settings have " +
                       scale_text(device.scale) + remedy);
   }
   if (const auto failures = certificate.failures(); !failures.empty()) {
@@ -242,7 +241,7 @@ void require_stable(const Certificate& certificate, double stiffness_n_per_mm) {
   }
   throw DeviceError(fmt::format(
       "{}: a wall of {:.2g} N/mm oscillated in its acceptance, and the study's wall has {:.2g} "
-      "N/mm; give the study's rendering a stiffness of at most {:.2g} N/mm",
+      "N/mm; set the stiffness in the study's rendering to at most {:.2g} N/mm",
       certificate.driver, certificate.wall->oscillates_n_per_mm, stiffness_n_per_mm,
       certificate.wall->stable_n_per_mm));
 }
@@ -255,30 +254,30 @@ DeviceModel model_of(const Certificate& certificate, const DeviceInfo& device) {
       (certificate.emulated.empty() ? std::string("device accept")
                                     : "a rehearsal on the model " + certificate.emulated) +
       ", " + utc_text(certificate.made.time_since_epoch());
-  const auto take = [&](const char* key, double value, double limit, double& into) {
-    into = std::clamp(value, 0.0, limit);
-    if (into == 0.0) return;
+  const auto set_parameter = [&](const char* key, double value, double limit, double& parameter) {
+    parameter = std::clamp(value, 0.0, limit);
+    if (parameter == 0.0) return;
     model.provenance[key] = {
         source, certificate.emulated.empty() ? Confidence::measured : Confidence::derived};
   };
   if (const auto mass = certificate.mean_of(&AxisResult::mass_kg)) {
-    take("mass_kg", mass->value, 5.0, model.mass_kg);
+    set_parameter("mass_kg", mass->value, 5.0, model.mass_kg);
   }
   if (const auto viscous = certificate.mean_of(&AxisResult::viscous_n_s_per_m)) {
-    take("viscous_n_s_per_m", viscous->value, 100.0, model.viscous_n_s_per_m);
+    set_parameter("viscous_n_s_per_m", viscous->value, 100.0, model.viscous_n_s_per_m);
   }
   if (const auto friction = certificate.mean_of(&AxisResult::friction_n)) {
-    take("coulomb_n", friction->value, 10.0, model.coulomb_n);
+    set_parameter("coulomb_n", friction->value, 10.0, model.coulomb_n);
   }
   if (certificate.step_mm) {
-    take("position_step_mm", certificate.step_mm->value, 1.0, model.position_step_mm);
+    set_parameter("position_step_mm", certificate.step_mm->value, 1.0, model.position_step_mm);
   }
   if (const auto delay = certificate.mean_of(&AxisResult::delay_ms)) {
     double ticks = 0.0;
-    take("delay_ticks", std::round(delay->value), 100.0, ticks);
+    set_parameter("delay_ticks", std::round(delay->value), 100.0, ticks);
     model.delay_ticks = static_cast<int>(ticks);
   }
-  // It is not measured, but without it a model's walls would be more stable than any device's.
+  // This is not measured, but without it the model's walls would be more stable than any device's.
   model.zero_order_hold = true;
   model.provenance["zero_order_hold"] = {"every device holds a force until the next tick",
                                          Confidence::guess};

@@ -1,5 +1,5 @@
-/// \file The certificate of an acceptance: its results, their judgement, and its file, to which
-/// sessions refer by its hash. Format: docs/data-dictionary.md.
+/// \file The certificate of an acceptance: results, verdict, and the file, to which sessions refer
+/// by its hash. Format: docs/data-dictionary.md.
 #pragma once
 
 #include "core/hash.hpp"
@@ -21,41 +21,42 @@ inline constexpr double kStandardGravityMS2 = 9.80665;
 /// \name Limits beyond which a device fails. Sources: docs/devices/acceptance.md.
 ///@{
 inline constexpr double kForceTolerance = 0.10;  ///< share of the force
-inline constexpr double kMaxNoiseMm = 0.1;       ///< of a handle that lies still
+inline constexpr double kMaxNoiseMm = 0.1;       ///< of a handle at rest
 inline constexpr double kMaxDriftMm = 0.5;
 inline constexpr double kMaxStepMm = 0.1;
-inline constexpr double kMaxFrictionN = 0.7;  ///< the push of a stroke
+inline constexpr double kMaxFrictionN = 0.7;  ///< equals a hand's push on the plane
 inline constexpr double kMaxDelayMs = 5.0;
-inline constexpr double kMaxDelayErrorMs = 2.0;  ///< a larger stated error makes the delay useless
+inline constexpr double kMaxDelayErrorMs = 2.0;  ///< with a larger error the delay is unclear
 inline constexpr double kMaxWarmDrift = 0.10;    ///< share of the load, over twenty minutes
 ///@}
 
-/// The verdict of a delay's interval. A device must be shown to be below the limit.
+/// The position of a delay's interval relative to kMaxDelayMs. Only `below` passes.
 enum class DelayVerdict {
-  below,      ///< all of the interval is within the limit
-  above,      ///< all of it is beyond
-  not_shown,  ///< the limit is within it
-  unclear,    ///< wider than kMaxDelayErrorMs to either side, and not entirely beyond
+  below,      ///< the interval is below the limit
+  above,      ///< the interval is above the limit
+  not_shown,  ///< the interval contains the limit
+  unclear,    ///< the error exceeds kMaxDelayErrorMs, and the interval is not above the limit
 };
 [[nodiscard]] DelayVerdict verdict_on_delay(const Measured& delay_ms) noexcept;
 
 /// An older certificate causes a warning.
 inline constexpr std::chrono::hours kCertificateAge{24 * 180};
-/// A certificate from further in the future is refused; clocks of two machines may differ by this.
+/// A certificate from further in the future is refused. The clocks of two machines may differ by
+/// this much.
 inline constexpr std::chrono::hours kCertificateLead{24};
 
 /// A push along an axis until the handle moved.
 struct PushResult {
   double force_n = 0.0;    ///< of the last step of 0.1 N
   bool moved = false;      ///< by 2 mm
-  double along_mm = 0.0;   ///< moved in the force's direction; negative: against it
-  double across_mm = 0.0;  ///< moved across it, >= 0
+  double along_mm = 0.0;   ///< motion in the force's direction; negative: against it
+  double across_mm = 0.0;  ///< motion perpendicular to it, >= 0
 };
 
 /// A known force held by the device.
 struct WeighResult {
   double expected_n = 0.0;  ///< of the weight or the spring scale, > 0
-  double measured_n = 0.0;  ///< commanded with the load minus without it, >= 0
+  double measured_n = 0.0;  ///< additional force commanded for the load, >= 0
   double error_n = 0.0;     ///< of measured_n
 };
 
@@ -65,8 +66,9 @@ struct AxisResult {
   std::optional<PushResult> plus{};   ///< force in the axis' direction
   std::optional<PushResult> minus{};  ///< force against it
   std::optional<WeighResult> weight{};
-  std::optional<double> load_n{};        ///< that the empty handle needs along the axis
-  std::optional<Measured> friction_n{};  ///< of slow strokes; at the handle, as the two below
+  std::optional<double> load_n{};  ///< force that supports the empty handle along the axis
+  /// From slow strokes. This and the next two are in newtons at the handle once the scale is known.
+  std::optional<Measured> friction_n{};
   std::optional<Measured> mass_kg{};
   std::optional<Measured> viscous_n_s_per_m{};
   std::optional<Measured> delay_ms{};
@@ -81,21 +83,20 @@ struct AxisResult {
 struct WallResult {
   double stable_n_per_mm = 0.0;      ///< the stiffest that did not oscillate; 0: none
   double oscillates_n_per_mm = 0.0;  ///< the first that did; 0: none did
-  std::string ended;                 ///< why the trials ended
+  std::string ended;                 ///< the reason why the trials ended
 };
 
 /// The force that a load needs, before and after twenty minutes.
 struct WarmResult {
   double before_n = 0.0;
   double after_n = 0.0;
-  std::optional<double> before_c{};  ///< temperature of the motors' housing, typed in
+  std::optional<double> before_c{};  ///< temperature of the motors' housing, as entered
   std::optional<double> after_c{};
 };
 
-/// A measurement that is missing, and why.
 struct NotMeasured {
-  std::string what;
-  std::string why;
+  std::string measurement;
+  std::string reason;
 };
 
 struct Certificate {
@@ -115,37 +116,36 @@ struct Certificate {
   std::optional<WarmResult> warm{};
   std::vector<NotMeasured> not_measured{};
 
-  /// \return why the device is refused, a line each; empty: it passed. Required are noise at rest
-  ///   and, for all three axes, signs, forces and, unless skipped, delays.
+  /// Requires noise at rest and, for all three axes, signs, forces and, unless skipped, delays.
+  /// \return the reasons why the device fails, one line each; empty: it passed
   [[nodiscard]] std::vector<std::string> failures() const;
   [[nodiscard]] bool passed() const { return failures().empty(); }
   /// \return the largest factor between delivered and commanded force; 1 if none was measured
   [[nodiscard]] double largest_scale() const;
-  /// \return the mean over the axes that have it
+  /// \return the mean of a result over the axes that have it; nothing if none has it
   [[nodiscard]] std::optional<Measured> mean_of(std::optional<Measured> AxisResult::*part) const;
 };
 
-/// \return the content of its file: JSON, indented
+/// \return the content of the certificate's file: JSON, indented
 [[nodiscard]] std::string certificate_json(const Certificate& certificate);
 
 /// A certificate and the SHA-256 of its file, which a session stores.
-struct ReadCertificate {
+struct HashedCertificate {
   Certificate certificate;
   Digest hash{};
 };
 
 /// \param source  the file's name, for messages
-/// \throws StudyError with the JSON pointer if it is not a certificate, or its claims contradict its
-///   measurements
+/// \throws StudyError with the JSON pointer if the text is not a certificate, or `passed` or `scale`
+///   contradict the measurements
 [[nodiscard]] Certificate parse_certificate(const std::string& text, const std::string& source);
 /// \throws FileError if it cannot be read; otherwise as parse_certificate
-[[nodiscard]] ReadCertificate read_certificate(const std::filesystem::path& path);
+[[nodiscard]] HashedCertificate read_certificate(const std::filesystem::path& path);
 
 /// Compares a certificate with the device of a session.
-/// \return a warning if the certificate is older than kCertificateAge or of another firmware, else
-///   ""
-/// \throws DeviceError with the remedy if it is of an emulated device, did not pass, has another
-///   driver, model, serial number or scale, or was made more than kCertificateLead after now
+/// \return a warning if the certificate is older than kCertificateAge or for other firmware, else ""
+/// \throws DeviceError with the remedy if it is from a rehearsal, did not pass, has another driver,
+///   model, serial number or scale, or was made more than kCertificateLead after `now`
 [[nodiscard]] std::string check_certificate(const Certificate& certificate,
                                             const DeviceInfo& device, std::chrono::sys_seconds now);
 
@@ -154,11 +154,10 @@ struct ReadCertificate {
 ///   the acceptance
 void require_stable(const Certificate& certificate, double stiffness_n_per_mm);
 
-/// \return a device model of the measurements, with a held force, for planning and rehearsals;
-///   parameters that were not measured are zero, which disables their stage. Soft arms, friction at
-///   rest and the lag of velocities are never measured, so walls of the model are more stable than
-///   the device's.
-/// \param device  force limits and workspace; the values of a rehearsal are derived, not measured
+/// \param device  source of force limits and workspace
+/// \return a device model with the measured parameters, for planning and rehearsals. Parameters that
+///   were not measured are zero, which disables their stage. Soft arms, friction at rest and the
+///   lag of velocities are never measured, so the model's walls are more stable than the device's.
 [[nodiscard]] DeviceModel model_of(const Certificate& certificate, const DeviceInfo& device);
 
 }  // namespace touchtrial::device

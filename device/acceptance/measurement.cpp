@@ -7,33 +7,33 @@
 namespace touchtrial::device {
 namespace {
 
-constexpr double kRestMm = 0.3;         ///< a handle is at rest within this distance
-constexpr double kRestS = 0.4;          ///< for this long
-constexpr double kMaxRestWaitS = 10.0;  ///< for rest
-constexpr double kSmoothing = 0.05;     ///< of a new reading: about 20 ms
+constexpr double kMaxRestMotionMm = 0.3;  ///< a handle is at rest if it moves less than this
+constexpr double kRestS = 0.4;            ///< minimum time at rest
+constexpr double kMaxRestWaitS = 10.0;
+constexpr double kSmoothing = 0.05;  ///< weight of a new reading: about 20 ms
 constexpr double kPushReachMm = 15.0;
 constexpr double kStrokeReachMm = 40.0;
 constexpr double kSupportRampS = 1.0;
 constexpr double kHeldSwingMm = 0.6;
-constexpr double kTurnAtMm = 22.0;  ///< shaken strokes reverse here at the latest
-constexpr double kTurnAtMmS = 400.0;
-constexpr double kMaxPushS = 0.15;
-constexpr double kMinPushS = 0.008;
+constexpr double kTurnAtMm = 22.0;    ///< maximum distance at which shaken strokes reverse
+constexpr double kTurnAtMmS = 400.0;  ///< speed at which shaken strokes reverse
+constexpr double kMaxPushS = 0.15;    ///< between reversals
+constexpr double kMinPushS = 0.008;   ///< between reversals
 constexpr double kCentringNPerMm = 0.02;
 constexpr double kHighPassHz = 12.0;
-constexpr double kSwingsWithinS = 0.45;  ///< eight half swings: at least 9 Hz, more than a hand
+constexpr double kSwingsWithinS = 0.45;  ///< for eight half swings: 9 Hz, faster than a hand
 constexpr double kTwoPi = 6.283185307179586;
 
-/// From 0 up to 1, down to -1 and back, once in a period.
+/// A triangle wave: from 0 up to 1, down to -1 and back to 0 in each period.
 double triangle(double periods) noexcept {
   const double phase = periods - std::floor(periods);
   if (phase < 0.25) return 4.0 * phase;
   return phase < 0.75 ? 2.0 - 4.0 * phase : 4.0 * phase - 4.0;
 }
 
-Vec3 shortened_to(Vec3 force_n, double max_n) noexcept {
-  const double size_n = norm(force_n);
-  return size_n <= max_n ? force_n : (max_n / size_n) * force_n;
+Vec3 limit_force_norm(Vec3 force_n, double max_n) noexcept {
+  const double norm_n = norm(force_n);
+  return norm_n <= max_n ? force_n : (max_n / norm_n) * force_n;
 }
 
 }  // namespace
@@ -58,39 +58,39 @@ Vec3 Measurement::force_n(const DeviceSample& sample) noexcept {
   if (!sample.ready || done()) return {};
   if (ticks_ == 0) start_mm_ = sample.position_mm;
   if (norm(sample.position_mm - start_mm_) > reach_mm_) {
-    ran_away_ = true;
+    has_run_away_ = true;
     finish();
     return {};
   }
   const double time_s = static_cast<double>(ticks_++) * kServoTickS;
   const Vec3 force = next_n(sample, time_s);
-  return done() ? Vec3{} : shortened_to(force, max_n_);
+  return done() ? Vec3{} : limit_force_norm(force, max_n_);
 }
 
 void Measurement::record(const ServoSample& sample) noexcept {
   if (samples_.size() < samples_.capacity()) samples_.push_back(sample);
 }
 
-bool SwingDetector::swings(double place_mm, double time_s) noexcept {
+bool SwingDetector::update(double position_mm, double time_s) noexcept {
   const double share = 1.0 - std::exp(-kTwoPi * kHighPassHz * kServoTickS);
-  if (!has_place_) {
-    has_place_ = true;
-    slow_mm_[0] = place_mm;
+  if (!has_position_) {
+    has_position_ = true;
+    slow_mm_[0] = position_mm;
   }
-  slow_mm_[0] += share * (place_mm - slow_mm_[0]);
-  const double first_mm = place_mm - slow_mm_[0];
+  slow_mm_[0] += share * (position_mm - slow_mm_[0]);
+  const double high_passed_mm = position_mm - slow_mm_[0];
   // A steady motion becomes a constant after the first filter and zero after the second.
-  slow_mm_[1] += share * (first_mm - slow_mm_[1]);
-  const double fast_mm = first_mm - slow_mm_[1];
+  slow_mm_[1] += share * (high_passed_mm - slow_mm_[1]);
+  const double fast_mm = high_passed_mm - slow_mm_[1];
   if (std::abs(fast_mm) >= min_mm_ && fast_mm * peak_mm_ <= 0.0) {
-    const std::size_t at = half_swings_++ % peaks_mm_.size();
-    times_s_[at] = time_s;
-    peak_mm_ = peaks_mm_[at] = fast_mm;
+    const std::size_t newest = half_swings_++ % peaks_mm_.size();
+    times_s_[newest] = time_s;
+    peak_mm_ = peaks_mm_[newest] = fast_mm;
     if (half_swings_ >= peaks_mm_.size()) {
       const std::size_t oldest = half_swings_ % peaks_mm_.size();
-      const std::size_t before = (at + peaks_mm_.size() - 1) % peaks_mm_.size();
+      const std::size_t previous = (newest + peaks_mm_.size() - 1) % peaks_mm_.size();
       return time_s - times_s_[oldest] < kSwingsWithinS &&
-             std::abs(peaks_mm_[before]) > 0.5 * std::abs(peaks_mm_[oldest]);
+             std::abs(peaks_mm_[previous]) > 0.5 * std::abs(peaks_mm_[oldest]);
     }
   } else if (std::abs(fast_mm) > std::abs(peak_mm_) && half_swings_ > 0) {
     peak_mm_ = peaks_mm_[(half_swings_ - 1) % peaks_mm_.size()] = fast_mm;
@@ -98,7 +98,7 @@ bool SwingDetector::swings(double place_mm, double time_s) noexcept {
   return false;
 }
 
-bool ReboundDetector::throws(double height_mm) noexcept {
+bool ReboundDetector::update(double height_mm) noexcept {
   if (height_mm >= 0.0) {
     highest_mm_ = std::max(highest_mm_, height_mm);
     return false;
@@ -109,17 +109,17 @@ bool ReboundDetector::throws(double height_mm) noexcept {
   if (rebound_mm < kMinMm) return false;
   rebounds_mm_[rebounds_++ % rebounds_mm_.size()] = rebound_mm;
   return rebounds_ >= rebounds_mm_.size() &&
-         rebound_mm > kFaded * rebounds_mm_[rebounds_ % rebounds_mm_.size()];
+         rebound_mm > kDecayedRatio * rebounds_mm_[rebounds_ % rebounds_mm_.size()];
 }
 
-Listening::Listening(double seconds)
+PassiveRun::PassiveRun(double seconds)
     : Measurement(seconds, 0.0, std::numeric_limits<double>::infinity()) {}
 
-Vec3 Listening::next_n(const DeviceSample& sample, double time_s) noexcept {
-  if (!has_reading_) first_ = newest_ = sample.sequence;
-  gap_ = has_reading_ && sample.sequence == newest_ ? gap_ + 1 : 0;
+Vec3 PassiveRun::next_n(const DeviceSample& sample, double time_s) noexcept {
+  if (!has_reading_) first_sequence_ = newest_sequence_ = sample.sequence;
+  gap_ = has_reading_ && sample.sequence == newest_sequence_ ? gap_ + 1 : 0;
   has_reading_ = true;
-  newest_ = sample.sequence;
+  newest_sequence_ = sample.sequence;
   longest_gap_ = std::max(longest_gap_, gap_);
   if (time_s >= seconds()) finish();
   return {};
@@ -132,49 +132,49 @@ AxisPush::AxisPush(DeviceAxis axis, double max_n)
       max_step_n_(std::min(max_n, kMaxN)) {}
 
 Vec3 AxisPush::next_n(const DeviceSample& sample, double time_s) noexcept {
-  if (!has_place_) {
-    has_place_ = true;
-    smooth_mm_ = from_mm_ = sample.position_mm;
+  if (!has_position_) {
+    has_position_ = true;
+    smoothed_mm_ = rest_mm_ = sample.position_mm;
   }
-  smooth_mm_ = smooth_mm_ + kSmoothing * (sample.position_mm - smooth_mm_);
-  if (!pushes_) {
+  smoothed_mm_ = smoothed_mm_ + kSmoothing * (sample.position_mm - smoothed_mm_);
+  if (!is_pushing_) {
     wait_for_rest(time_s);
     return {};
   }
-  const double step = std::floor((time_s - since_s_) / kStepS) + 1.0;
+  const double step = std::floor((time_s - phase_start_s_) / kStepS) + 1.0;
   const double force_n = std::min(step * kStepN, max_step_n_);
-  if (norm(smooth_mm_ - from_mm_) >= kMovedMm) {
+  if (norm(smoothed_mm_ - rest_mm_) >= kMovedMm) {
     end_push(true, force_n);
-    waited_s_ = since_s_ = time_s;
+    wait_start_s_ = phase_start_s_ = time_s;
     return {};
   }
   if (step * kStepN > max_step_n_ + 0.5 * kStepN) {
     end_push(false, max_step_n_);
-    waited_s_ = since_s_ = time_s;
+    wait_start_s_ = phase_start_s_ = time_s;
     return {};
   }
   return static_cast<double>(sign_) * force_n * direction_;
 }
 
 void AxisPush::wait_for_rest(double time_s) noexcept {
-  if (norm(smooth_mm_ - from_mm_) > kRestMm) {
-    from_mm_ = smooth_mm_;
-    since_s_ = time_s;
+  if (norm(smoothed_mm_ - rest_mm_) > kMaxRestMotionMm) {
+    rest_mm_ = smoothed_mm_;
+    phase_start_s_ = time_s;
   }
-  if (time_s - since_s_ >= kRestS) {
+  if (time_s - phase_start_s_ >= kRestS) {
     figures_.reached_rest = true;
-    pushes_ = true;
-    from_mm_ = smooth_mm_;
-    since_s_ = time_s;
-  } else if (time_s - waited_s_ > kMaxRestWaitS) {
+    is_pushing_ = true;
+    rest_mm_ = smoothed_mm_;
+    phase_start_s_ = time_s;
+  } else if (time_s - wait_start_s_ > kMaxRestWaitS) {
     figures_.reached_rest = false;
     finish();
   }
 }
 
 void AxisPush::end_push(bool moved, double force_n) noexcept {
-  const Push push{force_n, moved, smooth_mm_ - from_mm_};
-  pushes_ = false;
+  const Push push{force_n, moved, smoothed_mm_ - rest_mm_};
+  is_pushing_ = false;
   const bool is_against =
       moved && static_cast<double>(sign_) * dot(push.moved_mm, direction_) <= 0.0;
   if (sign_ > 0) {
@@ -187,7 +187,7 @@ void AxisPush::end_push(bool moved, double force_n) noexcept {
     return;
   }
   sign_ = -1;
-  from_mm_ = smooth_mm_;
+  rest_mm_ = smoothed_mm_;
 }
 
 SlowStrokes::SlowStrokes(DeviceAxis axis, Vec3 support_n, const HoldGains& gains, double max_n,
@@ -205,25 +205,25 @@ Vec3 SlowStrokes::next_n(const DeviceSample& sample, double time_s) noexcept {
     finish();
     return {};
   }
-  const Vec3 at_mm = sample.position_mm;
-  const bool swings_x = detectors_[0].swings(at_mm.x, time_s);
-  const bool swings_y = detectors_[1].swings(at_mm.y, time_s);
-  const bool swings_z = detectors_[2].swings(at_mm.z, time_s);
+  const Vec3 position_mm = sample.position_mm;
+  const bool swings_x = detectors_[0].update(position_mm.x, time_s);
+  const bool swings_y = detectors_[1].update(position_mm.y, time_s);
+  const bool swings_z = detectors_[2].update(position_mm.z, time_s);
   if (swings_x || swings_y || swings_z) {
-    swung_ = true;
+    has_swung_ = true;
     finish();
     return {};
   }
   const double stroke = time_s < hold_s_ ? 0.0 : triangle((time_s - hold_s_) / kPeriodS);
-  const Vec3 place_mm = start_mm() + (kAmplitudeMm * stroke) * direction_of(axis_);
+  const Vec3 target_mm = start_mm() + (kAmplitudeMm * stroke) * direction_of(axis_);
   return std::min(1.0, time_s / kSupportRampS) * support_n_ +
-         gains_.spring_n_per_mm * (place_mm - sample.position_mm) -
+         gains_.spring_n_per_mm * (target_mm - sample.position_mm) -
          gains_.damper_n_s_per_mm * sample.velocity_mm_s;
 }
 
 ShakenStrokes::ShakenStrokes(DeviceAxis axis, Vec3 support_n, double push_n, const HoldGains& gains,
                              double max_n)
-    : Measurement(begins_s() + kShakeS, max_n, kStrokeReachMm),
+    : Measurement(shake_start_s() + kShakeS, max_n, kStrokeReachMm),
       axis_(axis),
       support_n_(support_n),
       push_n_(push_n),
@@ -234,27 +234,27 @@ Vec3 ShakenStrokes::next_n(const DeviceSample& sample, double time_s) noexcept {
     finish();
     return {};
   }
-  const Vec3 held_n = std::min(1.0, time_s / kSupportRampS) * support_n_ +
+  const Vec3 hold_n = std::min(1.0, time_s / kSupportRampS) * support_n_ +
                       gains_.spring_n_per_mm * (start_mm() - sample.position_mm) -
                       gains_.damper_n_s_per_mm * sample.velocity_mm_s;
-  if (time_s < begins_s()) return held_n;
+  if (time_s < shake_start_s()) return hold_n;
   const Vec3 axis = direction_of(axis_);
   const double along_mm = dot(sample.position_mm - start_mm(), axis);
   const double along_mm_s = dot(sample.velocity_mm_s, axis);
-  const double progress = (time_s - begins_s()) / kShakeS;
+  const double progress = (time_s - shake_start_s()) / kShakeS;
   const double stroke_mm = kMaxStrokeMm + progress * (kMinStrokeMm - kMaxStrokeMm);
-  const double pushed_s = time_s - turned_s_;
+  const double push_time_s = time_s - turn_s_;
   const auto sign = static_cast<double>(sign_);
-  const bool is_far = sign * along_mm > kTurnAtMm;
-  const bool is_long = sign * (along_mm - turned_mm_) > stroke_mm ||
-                       sign * along_mm_s > kTurnAtMmS || pushed_s > kMaxPushS;
-  if (is_far || (is_long && pushed_s > kMinPushS)) {
+  const bool is_beyond_range = sign * along_mm > kTurnAtMm;
+  const bool is_stroke_over = sign * (along_mm - turn_mm_) > stroke_mm ||
+                              sign * along_mm_s > kTurnAtMmS || push_time_s > kMaxPushS;
+  if (is_beyond_range || (is_stroke_over && push_time_s > kMinPushS)) {
     sign_ = -sign_;
-    turned_s_ = time_s;
-    turned_mm_ = along_mm;
+    turn_s_ = time_s;
+    turn_mm_ = along_mm;
   }
   const double push_n = static_cast<double>(sign_) * push_n_ - kCentringNPerMm * along_mm;
-  const Vec3 across_n = held_n - (dot(held_n, axis)) * axis;
+  const Vec3 across_n = hold_n - (dot(hold_n, axis)) * axis;
   return across_n + (dot(support_n_, axis) + push_n) * axis;
 }
 
@@ -266,10 +266,10 @@ WallTrial::WallTrial(double stiffness_n_per_mm, double min_mm, double max_n)
 Vec3 WallTrial::next_n(const DeviceSample& sample, double time_s) noexcept {
   if (time_s >= seconds()) finish();
   const double height_mm = sample.position_mm.y - (start_mm().y - kDepthMm);
-  const bool swings_now = detector_.swings(height_mm, time_s);
-  const bool throws_now = rebounds_.throws(height_mm);
-  if ((contact_s_ > 0.0 && swings_now) || throws_now) {
-    oscillated_ = true;
+  const bool is_swinging = detector_.update(height_mm, time_s);
+  const bool is_rebounding = rebounds_.update(height_mm);
+  if ((contact_s_ > 0.0 && is_swinging) || is_rebounding) {
+    has_oscillated_ = true;
     finish();
     return {};
   }

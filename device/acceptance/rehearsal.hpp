@@ -31,27 +31,27 @@ class Rehearsal final : public AcceptanceBench, public AcceptancePerson {
   [[nodiscard]] std::string ask_observation(const std::string& question) override;
   void show(const std::string& result) override { results_.push_back(result); }
 
-  /// Every result, a line each.
+  /// Every result, one line each.
   [[nodiscard]] const std::vector<std::string>& results() const noexcept { return results_; }
 
  private:
-  [[nodiscard]] DeviceDynamics::Outside hand(double time_s, Vec3 position_mm) const;
+  [[nodiscard]] DeviceDynamics::TipLoad hand_load(double time_s, Vec3 position_mm) const;
 
-  /// The hand's hold at a time of the run while it lets go.
-  [[nodiscard]] DeviceDynamics::Outside letting_go(double time_s, Vec3 off_mm) const;
+  /// The load of a hand that gradually lets go.
+  [[nodiscard]] DeviceDynamics::TipLoad release_load(double time_s, Vec3 to_middle_mm) const;
 
   ModelledDevice device_;
   SafetyLimits limits_;
   Vec3 middle_mm_;
-  Grip stance_ = Grip::lying;
+  Grip grip_ = Grip::lying;
   DeviceAxis axis_ = DeviceAxis::y;
   double weight_n_ = 0.0;
-  double began_s_ = 0.0;
+  double run_start_s_ = 0.0;
   std::vector<std::string> results_;
 };
 
-/// Rehearses with a model.
-/// \return with `emulated` set
+/// Rehearses an acceptance with a device model.
+/// \return the acceptance, with Certificate::emulated set
 [[nodiscard]] Acceptance rehearse_acceptance(const DeviceModel& model,
                                              const AcceptanceOptions& options);
 

@@ -20,12 +20,12 @@ class DeviceLink {
  public:
   using Time = std::chrono::nanoseconds;  ///< of one monotonic clock, which the driver chooses
 
-  /// If the servo has not renewed a force for this long it is stuck, and zero is sent.
+  /// A force older than this is replaced by zero, because the servo has stalled.
   static constexpr Time kForceLifetime = std::chrono::milliseconds(10);
 
   /// \name Servo thread
   ///@{
-  /// Takes the newest sample.
+  /// Reads the newest sample.
   /// \return fault once `fail` was called; never `stopped`
   [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept {
     sample = samples_.get();
@@ -49,10 +49,10 @@ class DeviceLink {
   [[nodiscard]] bool is_stopped() const noexcept {
     return halted_.load(std::memory_order_acquire) || fault() != DeviceFault::none;
   }
-  /// Latches the first fault: the force is zero from now on. Reopen a failed link.
+  /// Latches the first fault: the force stays zero until the device is reopened.
   void fail(DeviceFault fault) noexcept {
-    DeviceFault none = DeviceFault::none;
-    fault_.compare_exchange_strong(none, fault, std::memory_order_acq_rel);
+    DeviceFault expected = DeviceFault::none;
+    fault_.compare_exchange_strong(expected, fault, std::memory_order_acq_rel);
   }
   ///@}
 
@@ -65,12 +65,12 @@ class DeviceLink {
   /// \return the force to send now, device frame, N: the servo's newest, or zero if there is none,
   ///   if it is too old, or after `halt` or `fail`
   [[nodiscard]] Vec3 force_to_send(Time now) noexcept { return live_force(now).value_or(Vec3{}); }
-  /// The same for drivers that must know whether a servo renders: nothing instead of such a zero.
+  /// The same for drivers that must detect a missing force: nothing instead of zero in these cases.
   [[nodiscard]] std::optional<Vec3> live_force(Time now) noexcept {
     const TimedForce& newest = forces_.get();
-    const bool usable = newest.any && now - newest.written_at <= kForceLifetime &&
-                        !halted_.load(std::memory_order_acquire) && fault() == DeviceFault::none;
-    return usable ? std::optional(newest.force_n) : std::nullopt;
+    const bool is_usable = newest.is_set && now - newest.written_at <= kForceLifetime &&
+                           !halted_.load(std::memory_order_acquire) && fault() == DeviceFault::none;
+    return is_usable ? std::optional(newest.force_n) : std::nullopt;
   }
   ///@}
 
@@ -80,7 +80,7 @@ class DeviceLink {
   struct TimedForce {
     Vec3 force_n;
     Time written_at{};
-    bool any = false;
+    bool is_set = false;
   };
 
   [[nodiscard]] DeviceStatus status() const noexcept {
@@ -103,10 +103,10 @@ class LinkPace {
   [[nodiscard]] virtual Time now() noexcept = 0;
   /// Sleeps on the driver's thread until its next exchange is due.
   virtual void rest_until(Time time) noexcept = 0;
-  /// Called when the driver's thread has waited this long in vain for an answer; advances a virtual
+  /// Called when the driver's thread has waited this long without an answer; advances a virtual
   /// clock.
-  virtual void waited(Time /*time*/) noexcept {}
-  /// Ends all sleeps because the device is being closed, or the driver's thread has ended.
+  virtual void on_wait(Time /*time*/) noexcept {}
+  /// Ends all sleeps, because the device is being closed or the driver's thread has ended.
   /// Thread-safe.
   virtual void end() noexcept {}
 };
@@ -132,9 +132,9 @@ class LinkedDevice : public HapticDevice {
   [[nodiscard]] DeviceFault fault() const noexcept final { return link().fault(); }
 
  private:
-  /// The same object during the device's lifetime.
+  /// \return the same object during the device's lifetime
   [[nodiscard]] virtual DeviceLink& link() const noexcept = 0;
-  /// The link's times are those of this clock.
+  /// \return the current time on the link's clock
   [[nodiscard]] virtual DeviceLink::Time link_time() const noexcept { return monotonic_now(); }
 };
 

@@ -1,5 +1,5 @@
-/// \file Every driver of the registry. A new driver is declared and listed here and nowhere else;
-/// its function is defined beside it, in its own folder. Private to this folder.
+/// \file Every driver of the registry. A new driver is declared and listed only here; its function
+/// is defined in the driver's folder. Private to this folder.
 #pragma once
 
 #include "device/drivers/registry.hpp"
@@ -8,23 +8,22 @@
 
 namespace touchtrial::device {
 
-/// `list` names every Falcon on the USB and its problem: permission, firmware, or use by another
-/// program. `open` opens the one named in the settings.
+/// `list` reports every Falcon on the USB and its problem, if any: permission, firmware, or use by
+/// another program. `open` opens the one named in the settings.
 [[nodiscard]] DeviceDriver falcon_driver();
 
-/// `list` loads the library, opens the device of the settings for a moment and closes it again,
-/// without force: the library has no other way to detect devices.
+/// `list` loads the library and briefly opens the device of the settings, without force: the
+/// library has no other way to detect devices.
 [[nodiscard]] DeviceDriver openhaptics_driver();
 
-/// `list` loads the library and opens each connected device for a moment, to read its name, without
-/// force.
+/// `list` loads the library and briefly opens each connected device, without force, to read its
+/// name.
 [[nodiscard]] DeviceDriver dhd_driver();
 
 /// `list` queries the Inverse service for its devices, over HTTP with a short timeout.
 [[nodiscard]] DeviceDriver inverse3_driver();
 
-/// `list` loads the library of the settings, opens its device for a moment and closes it again,
-/// without force.
+/// `list` loads the library of the settings and briefly opens its device, without force.
 [[nodiscard]] DeviceDriver plugin_driver();
 
 /// `list` finds a mouse if the environment names a display (DISPLAY, WAYLAND_DISPLAY). `open`
@@ -39,7 +38,7 @@ namespace touchtrial::device {
 /// succeed.
 [[nodiscard]] DeviceDriver replay_driver();
 
-/// \return all of them, in the order in which the program lists them
+/// \return all drivers, in the order in which the program lists them
 [[nodiscard]] inline std::vector<DeviceDriver> all_drivers() {
   return {falcon_driver(), openhaptics_driver(), dhd_driver(),       inverse3_driver(),
           plugin_driver(), mouse_driver(),       simulated_driver(), replay_driver()};

@@ -24,18 +24,18 @@ std::vector<DeviceListing> listings_of(const DeviceDriver& driver, const DeviceS
   }
 }
 
-/// \return settings with limits converted to the driver's newtons, for drivers that pass them on;
-///   every felt force within the limits fits
-DeviceSettings in_drivers_newtons(DeviceSettings settings, const std::string& driver) {
+/// \return settings with force limits converted to the driver's newtons, for drivers that pass them
+///   on to the device. In no direction is the converted limit below the lab's.
+DeviceSettings convert_force_limits(DeviceSettings settings, const std::string& driver) {
   DeviceUse& use = settings.uses[driver];
   const Vec3 force = use.scale.force;
-  const double weakest = std::min({force.x, force.y, force.z});
-  if (use.limits.max_force_n) *use.limits.max_force_n /= weakest;
-  if (use.limits.continuous_force_n) *use.limits.continuous_force_n /= weakest;
+  const double min_force_scale = std::min({force.x, force.y, force.z});
+  if (use.limits.max_force_n) *use.limits.max_force_n /= min_force_scale;
+  if (use.limits.continuous_force_n) *use.limits.continuous_force_n /= min_force_scale;
   return settings;
 }
 
-/// The products with a model, driver by driver.
+/// \return the products with a model, driver by driver
 std::vector<DeviceProduct> modelled_products() {
   std::vector<DeviceProduct> all;
   for (const DeviceDriver& driver : device_drivers()) {
@@ -77,9 +77,9 @@ std::vector<std::string_view> device_names() {
 }
 
 const DeviceDriver& device_driver(const std::string& name) {
-  for (const DeviceDriver& known : device_drivers()) {
-    const std::vector<std::string_view> names = known.names();
-    if (std::ranges::find(names, name) != names.end()) return known;
+  for (const DeviceDriver& driver : device_drivers()) {
+    const std::vector<std::string_view> names = driver.names();
+    if (std::ranges::find(names, name) != names.end()) return driver;
   }
   const auto nearest = nearest_product(name, device_names());
   throw UsageError(one_line(
@@ -101,13 +101,13 @@ DeviceModel model_of_device(const std::string& name) {
     if (product.name == name) return device_model(product.model);
   }
   const bool is_file = name.find('/') != std::string::npos || name.ends_with(".json");
-  const std::vector<std::string> known = modelled_names();
-  if (is_file || std::ranges::find(known, name) != known.end()) return device_model(name);
-  const std::vector<std::string_view> views(known.begin(), known.end());
+  const std::vector<std::string> names = modelled_names();
+  if (is_file || std::ranges::find(names, name) != names.end()) return device_model(name);
+  const std::vector<std::string_view> views(names.begin(), names.end());
   const auto nearest = nearest_product(name, views);
   throw UsageError(one_line(fmt::format(
-      "{}: there is no model of such a device; {}known are {}, and files that end in .json", name,
-      nearest ? "did you mean " + std::string(*nearest) + "? " : "", fmt::join(known, ", "))));
+      "{}: there is no model of such a device; {}give {}, or a file that ends in .json", name,
+      nearest ? "did you mean " + std::string(*nearest) + "? " : "", fmt::join(names, ", "))));
 }
 
 const DeviceDriver* driver_of_model(std::string_view model) {
@@ -121,10 +121,10 @@ const DeviceDriver* driver_of_model(std::string_view model) {
 
 std::unique_ptr<HapticDevice> open_device(const std::string& driver,
                                           const DeviceSettings& settings) {
-  const DeviceDriver& known = device_driver(driver);
-  const DeviceScale scale = settings.use_of(known.name).scale;
-  if (scale == DeviceScale{}) return known.open(settings);
-  return std::make_unique<ScaledDevice>(known.open(in_drivers_newtons(settings, known.name)),
+  const DeviceDriver& entry = device_driver(driver);
+  const DeviceScale scale = settings.use_of(entry.name).scale;
+  if (scale == DeviceScale{}) return entry.open(settings);
+  return std::make_unique<ScaledDevice>(entry.open(convert_force_limits(settings, entry.name)),
                                         scale);
 }
 

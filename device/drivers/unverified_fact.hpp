@@ -1,5 +1,5 @@
-/// \file Facts that were not verified on a real device. Each driver lists its own; docs and the
-///   bring-up print them.
+/// \file Facts that have not been verified on a real device. Each driver lists its facts; docs and
+///   the bring-up print them.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 namespace touchtrial::device {
 
 struct UnverifiedFact {
-  std::string id;                      ///< one word, unique among those of a driver
-  std::string what;                    ///< a line without a full stop
-  std::string question{};              ///< asked in a bring-up; empty: none
-  std::vector<std::string> answers{};  ///< its possible answers, one word each
+  std::string id;                      ///< one word, unique within a driver
+  std::string what;                    ///< the fact, one line without a full stop
+  std::string question{};              ///< for the bring-up; empty: none
+  std::vector<std::string> answers{};  ///< possible answers, one word each
 };
 
 }  // namespace touchtrial::device

@@ -12,10 +12,10 @@ namespace touchtrial::device {
 namespace {
 
 constexpr const char* kRemedy =
-    "install liblsl, name the library in the device settings at instruments.lsl.library, or take "
-    "instruments.lsl out";
+    "install liblsl, name the library in the device settings at instruments.lsl.library, or remove "
+    "instruments.lsl";
 
-/// Types and values of the library's C interface.
+// Types and values of the library's C interface.
 using StreamInfo = void*;
 using Outlet = void*;
 using StreamDescription = void*;
@@ -54,7 +54,7 @@ LslApi load_lsl(const DynamicLibrary& library) {
   return api;
 }
 
-/// A channel of the stream of position and force.
+/// A channel of the position and force stream.
 struct Channel {
   const char* label;
   const char* unit;
@@ -67,8 +67,8 @@ constexpr std::array<Channel, 6> kChannels = {{{"x", "millimeters", "Position"},
                                                {"fy", "newtons", "Force"},
                                                {"fz", "newtons", "Force"}}};
 
-double seconds_of(LabStreaming::TimePoint at) {
-  return std::chrono::duration<double>(at.time_since_epoch()).count();
+double seconds_of(LabStreaming::TimePoint time) {
+  return std::chrono::duration<double>(time.time_since_epoch()).count();
 }
 
 }  // namespace
@@ -76,10 +76,10 @@ double seconds_of(LabStreaming::TimePoint at) {
 struct LabStreaming::Outlets {
   Outlets(const LabStreamingSettings& settings, double rate_hz)
       : library(settings.library, Unload::never, kRemedy), api(load_lsl(library)) {
-    markers = outlet(settings.name + " markers", "Markers", 1, kIrregularRate, kString);
+    markers = make_outlet(settings.name + " markers", "Markers", 1, kIrregularRate, kString);
     try {
-      hand = outlet(settings.name + " hand", "MoCap", static_cast<int>(kChannels.size()), rate_hz,
-                    kDouble64);
+      hand = make_outlet(settings.name + " hand", "MoCap", static_cast<int>(kChannels.size()),
+                         rate_hz, kDouble64);
     } catch (...) {
       api.destroy_outlet(markers);
       throw;
@@ -92,34 +92,34 @@ struct LabStreaming::Outlets {
   Outlets(const Outlets&) = delete;
   Outlets& operator=(const Outlets&) = delete;
 
-  [[nodiscard]] Outlet outlet(const std::string& name, const char* type, int channels,
-                              double rate_hz, int format) const {
+  [[nodiscard]] Outlet make_outlet(const std::string& name, const char* type, int channels,
+                                   double rate_hz, int format) const {
     // Without a source id, recorders do not resume the stream, which suits a new session.
     StreamInfo info = api.create_streaminfo(name.c_str(), type, channels, rate_hz, format, "");
     if (info == nullptr) {
       throw DeviceError(
-          one_line("instruments.lsl: the library describes no stream '" + name + "'; " + kRemedy));
+          one_line("instruments.lsl: liblsl cannot create the stream '" + name + "'; " + kRemedy));
     }
     if (format == kDouble64) describe_channels(info);
-    Outlet made = api.create_outlet(info, kChunkAsPushed, kBufferedS);
+    Outlet outlet = api.create_outlet(info, kChunkAsPushed, kBufferedS);
     api.destroy_streaminfo(info);
-    if (made != nullptr) return made;
-    throw DeviceError(one_line("instruments.lsl: the library makes no outlet '" + name +
+    if (outlet != nullptr) return outlet;
+    throw DeviceError(one_line("instruments.lsl: liblsl cannot create the outlet '" + name +
                                "'; check that the network allows it, or remove instruments.lsl"));
   }
 
   void describe_channels(StreamInfo info) const {
     StreamDescription channels = api.append_child(api.get_desc(info), "channels");
-    for (const Channel& one : kChannels) {
+    for (const auto& [label, unit, type] : kChannels) {
       StreamDescription channel = api.append_child(channels, "channel");
-      static_cast<void>(api.append_child_value(channel, "label", one.label));
-      static_cast<void>(api.append_child_value(channel, "unit", one.unit));
-      static_cast<void>(api.append_child_value(channel, "type", one.type));
+      static_cast<void>(api.append_child_value(channel, "label", label));
+      static_cast<void>(api.append_child_value(channel, "unit", unit));
+      static_cast<void>(api.append_child_value(channel, "type", type));
     }
   }
 
-  [[nodiscard]] double stamp_of(TimePoint at) const noexcept {
-    return seconds_of(at) + offset_s.load(std::memory_order_relaxed);
+  [[nodiscard]] double stamp_of(TimePoint time) const noexcept {
+    return seconds_of(time) + offset_s.load(std::memory_order_relaxed);
   }
 
   DynamicLibrary library;
@@ -137,28 +137,28 @@ LabStreaming::LabStreaming(const LabStreamingSettings& settings, double rate_hz)
 
 LabStreaming::~LabStreaming() = default;
 
-void LabStreaming::mark(const std::string& text, TimePoint at) noexcept {
+void LabStreaming::mark(const std::string& text, TimePoint time) noexcept {
   const char* channel = text.c_str();
   static_cast<void>(
-      outlets_->api.push_texts(outlets_->markers, &channel, outlets_->stamp_of(at), kChunkSize));
+      outlets_->api.push_texts(outlets_->markers, &channel, outlets_->stamp_of(time), kChunkSize));
 }
 
-void LabStreaming::push(Vec3 position_mm, Vec3 force_n, TimePoint at) noexcept {
+void LabStreaming::push(Vec3 position_mm, Vec3 force_n, TimePoint time) noexcept {
   const std::array<double, kChannels.size()> values = {position_mm.x, position_mm.y, position_mm.z,
                                                        force_n.x,     force_n.y,     force_n.z};
   static_cast<void>(outlets_->api.push_doubles(outlets_->hand, values.data(),
-                                               outlets_->stamp_of(at), kChunkSize));
+                                               outlets_->stamp_of(time), kChunkSize));
 }
 
 ClockOffset LabStreaming::read_clock() noexcept {
   constexpr int kReadings = 5;
   ClockOffset best{0.0, std::numeric_limits<double>::infinity()};
   for (int i = 0; i < kReadings; ++i) {
-    const double before = seconds_of(std::chrono::steady_clock::now());
-    const double theirs = outlets_->api.local_clock();
-    const double after = seconds_of(std::chrono::steady_clock::now());
-    const double half = 0.5 * (after - before);
-    if (half < best.uncertainty_s) best = {theirs - (before + half), half};
+    const double before_s = seconds_of(std::chrono::steady_clock::now());
+    const double layer_s = outlets_->api.local_clock();
+    const double after_s = seconds_of(std::chrono::steady_clock::now());
+    const double half_s = 0.5 * (after_s - before_s);
+    if (half_s < best.uncertainty_s) best = {layer_s - (before_s + half_s), half_s};
   }
   outlets_->offset_s.store(best.offset_s, std::memory_order_relaxed);
   return best;

@@ -1,5 +1,5 @@
-/// \file The Lab Streaming Layer: one outlet of markers, one of position and force, and its clock,
-///   through the user's liblsl.
+/// \file The Lab Streaming Layer, through the user's liblsl: an outlet for markers, an outlet for
+///   position and force, and the layer's clock.
 #pragma once
 
 #include "core/vec.hpp"
@@ -17,9 +17,9 @@ struct LabStreamingSettings {
   std::string name = "Touchtrial";  ///< of the streams: "<name> markers" and "<name> hand"
 };
 
-/// The offset of the layer's clock to the program's monotonic clock.
+/// The offset between the layer's clock and the program's monotonic clock.
 struct ClockOffset {
-  double offset_s = 0.0;       ///< the layer's time less std::chrono::steady_clock's
+  double offset_s = 0.0;       ///< the layer's time minus std::chrono::steady_clock's
   double uncertainty_s = 0.0;  ///< half the duration of the reading
 };
 
@@ -32,17 +32,16 @@ class LabStreaming {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  /// \param rate_hz  nominal, of position and force
+  /// \param rate_hz  nominal rate of position and force
   /// \throws DeviceError with the remedy if the library cannot be used or creates no outlet
   LabStreaming(const LabStreamingSettings& settings, double rate_hz);
   ~LabStreaming();
   LabStreaming(const LabStreaming&) = delete;
   LabStreaming& operator=(const LabStreaming&) = delete;
 
-  /// \param text  of the marker
-  void mark(const std::string& text, TimePoint at) noexcept;
+  void mark(const std::string& text, TimePoint time) noexcept;
   /// \param position_mm,force_n  plane frame
-  void push(Vec3 position_mm, Vec3 force_n, TimePoint at) noexcept;
+  void push(Vec3 position_mm, Vec3 force_n, TimePoint time) noexcept;
 
   /// Reads both clocks; later timestamps use the offset.
   [[nodiscard]] ClockOffset read_clock() noexcept;

@@ -31,8 +31,8 @@ constexpr std::array<std::pair<int, speed_t>, 10> kRates = {{{9'600, B9600},
                                                              {921'600, B921600},
                                                              {1'000'000, B1000000}}};
 
-[[noreturn]] void refuse_port(const MarkerLineSettings& settings, const std::string& why) {
-  throw DeviceError(one_line("instruments.serial: " + settings.port.string() + ": " + why));
+[[noreturn]] void refuse_port(const MarkerLineSettings& settings, const std::string& problem) {
+  throw DeviceError(one_line("instruments.serial: " + settings.port.string() + ": " + problem));
 }
 
 std::string error_text(int error) {
@@ -40,16 +40,16 @@ std::string error_text(int error) {
 }
 
 speed_t rate_of(const MarkerLineSettings& settings) {
-  std::string known;
+  std::string supported;
   for (const auto& [baud, rate] : kRates) {
     if (baud == settings.baud) return rate;
-    known += (known.empty() ? "" : ", ") + std::to_string(baud);
+    supported += (supported.empty() ? "" : ", ") + std::to_string(baud);
   }
-  refuse_port(settings,
-              std::to_string(settings.baud) + " baud is not a supported rate; set one of " + known);
+  refuse_port(settings, std::to_string(settings.baud) +
+                            " baud is not a supported rate; set one of " + supported);
 }
 
-/// Raw bytes: 8N1, no flow control, no translation.
+/// Configures raw bytes: 8N1, no flow control, no translation.
 void make_raw(const MarkerLineSettings& settings, int descriptor) {
   termios line{};
   if (::tcgetattr(descriptor, &line) != 0) {
@@ -61,7 +61,7 @@ void make_raw(const MarkerLineSettings& settings, int descriptor) {
   const speed_t rate = rate_of(settings);
   if (::cfsetispeed(&line, rate) != 0 || ::cfsetospeed(&line, rate) != 0 ||
       ::tcsetattr(descriptor, TCSANOW, &line) != 0) {
-    refuse_port(settings, "does not take " + std::to_string(settings.baud) + " baud (" +
+    refuse_port(settings, "does not support " + std::to_string(settings.baud) + " baud (" +
                               error_text(errno) + "); set another rate");
   }
 }
@@ -71,10 +71,10 @@ int open_port(const MarkerLineSettings& settings) {
       ::open(settings.port.c_str(), O_WRONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) {
     const int error = errno;
-    refuse_port(settings, error_text(error) +
-                              (error == EACCES ? "; add the user to the group dialout"
-                                               : "; plug the instrument in, or take the line out "
-                                                 "of the device settings"));
+    refuse_port(settings, error_text(error) + (error == EACCES
+                                                   ? "; add the user to the group dialout"
+                                                   : "; connect the instrument, or remove the line "
+                                                     "from the device settings"));
   }
   try {
     make_raw(settings, descriptor);
@@ -109,46 +109,46 @@ MarkerLine::~MarkerLine() {
     const std::lock_guard lock(mutex_);
     is_closing_ = true;
   }
-  woken_.notify_one();
+  work_ready_.notify_one();
   thread_.join();
   ::close(descriptor_);
 }
 
-void MarkerLine::send(int code, int trial, TimePoint at) noexcept {
+void MarkerLine::send(int code, int trial, TimePoint time) noexcept {
   {
     const std::lock_guard lock(mutex_);
-    waiting_.push_back({marker_bytes(settings_, code, trial), at});
+    pending_.push_back({marker_bytes(settings_, code, trial), time});
   }
-  woken_.notify_one();
+  work_ready_.notify_one();
 }
 
 std::vector<SentMarker> MarkerLine::take() {
   std::unique_lock lock(mutex_);
-  done_.wait(lock, [this] { return waiting_.empty() && !is_writing_; });
+  idle_.wait(lock, [this] { return pending_.empty() && !is_writing_; });
   return std::exchange(sent_, {});
 }
 
 void MarkerLine::run() noexcept {
-  const bool resets = settings_.format == MarkerFormat::byte && settings_.reset_ms > 0.0;
+  const bool resets_lines = settings_.format == MarkerFormat::byte && settings_.reset_ms > 0.0;
   const auto reset_after = std::chrono::duration_cast<std::chrono::nanoseconds>(
       std::chrono::duration<double, std::milli>(settings_.reset_ms));
-  bool is_set = false;  // the lines of a trigger box
-  Clock::time_point reset_at{};
+  bool needs_reset = false;
+  Clock::time_point reset_time{};
   std::unique_lock lock(mutex_);
-  const auto has_work = [this] { return is_closing_ || !waiting_.empty(); };
+  const auto has_work = [this] { return is_closing_ || !pending_.empty(); };
   while (true) {
-    if (!is_set) {
-      woken_.wait(lock, has_work);
-    } else if (!woken_.wait_until(lock, reset_at, has_work)) {
-      is_set = false;
+    if (!needs_reset) {
+      work_ready_.wait(lock, has_work);
+    } else if (!work_ready_.wait_until(lock, reset_time, has_work)) {
+      needs_reset = false;
       lock.unlock();
       static_cast<void>(write(std::string(1, '\0')));
       lock.lock();
       continue;
     }
-    if (waiting_.empty()) break;
-    const Waiting next = std::move(waiting_.front());
-    waiting_.pop_front();
+    if (pending_.empty()) break;
+    const PendingMarker next = std::move(pending_.front());
+    pending_.pop_front();
     is_writing_ = true;
     lock.unlock();
     const bool is_written = write(next.bytes);
@@ -156,13 +156,13 @@ void MarkerLine::run() noexcept {
     lock.lock();
     is_writing_ = false;
     sent_.push_back(
-        {is_written ? std::optional(std::chrono::nanoseconds(now - next.at)) : std::nullopt});
-    is_set = resets;
-    reset_at = now + reset_after;
-    done_.notify_all();
+        {is_written ? std::optional(std::chrono::nanoseconds(now - next.time)) : std::nullopt});
+    needs_reset = resets_lines;
+    reset_time = now + reset_after;
+    idle_.notify_all();
   }
   lock.unlock();
-  if (is_set) static_cast<void>(write(std::string(1, '\0')));
+  if (needs_reset) static_cast<void>(write(std::string(1, '\0')));
 }
 
 bool MarkerLine::write(const std::string& bytes) noexcept {

@@ -33,12 +33,13 @@ struct MarkerLineSettings {
 };
 
 /// \param code  1 to 255
-/// \param trial  0 outside trials; as many of its low bytes as fit are sent
+/// \param trial  0 outside trials; in the byte format its high bytes are dropped if it is too large
+/// \return the bytes of one marker
 [[nodiscard]] std::string marker_bytes(const MarkerLineSettings& settings, int code, int trial);
 
 /// The result of one marker.
 struct SentMarker {
-  /// From the event to the return of the write; nothing: the write failed.
+  /// Time from the event to the end of the write; nothing: the write failed.
   std::optional<std::chrono::nanoseconds> latency;
 };
 
@@ -56,17 +57,17 @@ class MarkerLine {
   MarkerLine(const MarkerLine&) = delete;
   MarkerLine& operator=(const MarkerLine&) = delete;
 
-  /// \param at  the time of the event
-  void send(int code, int trial, TimePoint at) noexcept;
+  /// \param time  of the event
+  void send(int code, int trial, TimePoint time) noexcept;
 
   /// Waits until all pending markers are written or have failed.
   /// \return the results of markers since the last call, in order
   [[nodiscard]] std::vector<SentMarker> take();
 
  private:
-  struct Waiting {
+  struct PendingMarker {
     std::string bytes;
-    TimePoint at;
+    TimePoint time;
   };
 
   void run() noexcept;
@@ -75,9 +76,9 @@ class MarkerLine {
   MarkerLineSettings settings_;
   int descriptor_ = -1;
   std::mutex mutex_;
-  std::condition_variable woken_;  ///< for the line's thread
-  std::condition_variable done_;   ///< for `take`
-  std::deque<Waiting> waiting_;
+  std::condition_variable work_ready_;  ///< for the line's thread
+  std::condition_variable idle_;        ///< for `take`
+  std::deque<PendingMarker> pending_;
   bool is_writing_ = false;
   bool is_closing_ = false;
   std::vector<SentMarker> sent_;

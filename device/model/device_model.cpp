@@ -12,18 +12,18 @@
 namespace touchtrial::device {
 namespace {
 
-/// The ends of a workspace: stiff and well damped, so that a handle comes to rest there.
+/// The stops at the ends of a workspace: stiff and well damped, so that a handle comes to rest.
 constexpr double kStopNPerMm = 5.0;
 constexpr double kStopNSPerMm = 0.05;
 
 /// \return f(a, b, ...) on each axis
 template <typename Function, typename... Vectors>
-Vec3 on_each_axis(const Function& f, const Vectors&... vectors) noexcept {
+Vec3 map_axes(const Function& f, const Vectors&... vectors) noexcept {
   return {f(vectors.x...), f(vectors.y...), f(vectors.z...)};
 }
 
 Vec3 whole_steps(Vec3 a, double step) noexcept {
-  return on_each_axis([step](double value) { return step * std::nearbyint(value / step); }, a);
+  return map_axes([step](double value) { return step * std::nearbyint(value / step); }, a);
 }
 
 double checked_tick(double tick_s) {
@@ -37,20 +37,20 @@ const DeviceModel& checked_model(const DeviceModel& model) {
   return model;
 }
 
-/// \return where the nearest end of the workspace is, if the position lies beyond it
-std::optional<Vec3> end_of(const Workspace& workspace, Vec3 position_mm) noexcept {
+/// \return the nearest point of the workspace; nothing if the position is inside it
+std::optional<Vec3> nearest_point(const Workspace& workspace, Vec3 position_mm) noexcept {
   if (workspace.shape == WorkspaceShape::box) {
     const auto clamped = [](double value, double low, double high) {
       return std::clamp(value, low, high);
     };
-    const Vec3 end_mm = on_each_axis(clamped, position_mm, workspace.min_mm, workspace.max_mm);
+    const Vec3 end_mm = map_axes(clamped, position_mm, workspace.min_mm, workspace.max_mm);
     return end_mm == position_mm ? std::nullopt : std::optional(end_mm);
   }
   const Vec3 middle_mm = 0.5 * (workspace.min_mm + workspace.max_mm);
   const Vec3 half_mm = workspace.max_mm - middle_mm;
   const Vec3 from_middle_mm = position_mm - middle_mm;
-  const double radii = norm(
-      on_each_axis([](double way, double half) { return way / half; }, from_middle_mm, half_mm));
+  const double radii = norm(map_axes([](double distance, double half) { return distance / half; },
+                                     from_middle_mm, half_mm));
   if (radii <= 1.0) return std::nullopt;
   return middle_mm + (1.0 / radii) * from_middle_mm;
 }
@@ -63,10 +63,11 @@ DeviceDynamics::DeviceDynamics(const DeviceModel& model, double tick_s)
       static_n_(std::max(model.static_n, model.coulomb_n)),
       has_motors_(model.delay_ticks > 0 || model.max_force_n > 0.0 || model.force_step_n > 0.0 ||
                   model.lowpass_hz > 0.0 ||
-                  model.planted.force_sign_scale != DeviceModel::Planted{}.force_sign_scale),
+                  model.planted_faults.force_sign_scale !=
+                      DeviceModel::PlantedFaults{}.force_sign_scale),
       has_friction_(static_n_ > 0.0),
       has_true_readings_(model.position_step_mm == 0.0 && model.velocity_readings == 0 &&
-                         model.planted.position_noise_mm == 0.0) {
+                         model.planted_faults.position_noise_mm == 0.0) {
   if (model.structure.stiffness_n_per_mm > 0.0) {
     const double k = model.structure.stiffness_n_per_mm;
     tip_kg_ = model.structure.tip_share * model.mass_kg;
@@ -75,11 +76,11 @@ DeviceDynamics::DeviceDynamics(const DeviceModel& model, double tick_s)
   if (model.lowpass_hz > 0.0) {
     filter_share_ = -std::expm1(-2.0 * std::numbers::pi * model.lowpass_hz * tick_s);
   }
-  if (model.planted.position_noise_mm > 0.0) {
-    noise_.emplace(model.planted.seed, "device model's position noise");
+  if (model.planted_faults.position_noise_mm > 0.0) {
+    noise_.emplace(model.planted_faults.seed, "device model's position noise");
   }
   is_plain_ = !has_motors_ && !has_friction_ && has_true_readings_ && joint_ == 0.0 &&
-              model.planted.gravity_n == 0.0;
+              model.planted_faults.gravity_n == 0.0;
   delayed_n_.resize(static_cast<std::size_t>(model.delay_ticks));
   readings_mm_.resize(static_cast<std::size_t>(model.velocity_readings));
   place({});
@@ -95,8 +96,8 @@ void DeviceDynamics::place(Vec3 position_mm) noexcept {
   read_mm_s_ = {};
 }
 
-Vec3 DeviceDynamics::through_motors(const Vec3& commanded_n) noexcept {
-  Vec3 force_n = by_number(commanded_n);
+Vec3 DeviceDynamics::motor_force_n(const Vec3& commanded_n) noexcept {
+  Vec3 force_n = copy_by_component(commanded_n);
   if (!delayed_n_.empty()) {
     std::swap(force_n, delayed_n_[next_command_]);
     if (++next_command_ == delayed_n_.size()) next_command_ = 0;
@@ -110,8 +111,8 @@ Vec3 DeviceDynamics::through_motors(const Vec3& commanded_n) noexcept {
     filtered_n_ = filtered_n_ + filter_share_ * (force_n - filtered_n_);
     force_n = filtered_n_;
   }
-  const auto times = [](double a, double b) { return a * b; };
-  return on_each_axis(times, force_n, model_.planted.force_sign_scale);
+  const auto product = [](double a, double b) { return a * b; };
+  return map_axes(product, force_n, model_.planted_faults.force_sign_scale);
 }
 
 double DeviceDynamics::friction_n(double speed_mm_s) const noexcept {
@@ -121,53 +122,55 @@ double DeviceDynamics::friction_n(double speed_mm_s) const noexcept {
 }
 
 /// \param velocity_mm_s  before the tick
-/// \param stop_n  the force against the motion that would bring it to rest within the tick
+/// \param stop_n  the friction that would stop the motion within the tick
 /// \param free_mm_s  the velocity after the tick without friction
-/// \return the velocity with friction: at rest if friction can stop it, else less by friction's
-///   share of `stop_n`
-Vec3 DeviceDynamics::after_friction(const Vec3& velocity_mm_s, const Vec3& stop_n,
+/// \return the velocity after the tick: zero if friction suffices to stop the motion, else reduced
+///   by the share of friction in `stop_n`
+Vec3 DeviceDynamics::apply_friction(const Vec3& velocity_mm_s, const Vec3& stop_n,
                                     const Vec3& free_mm_s) const noexcept {
-  const auto left = [this](double before_mm_s, double needed_n, double speed_mm_s) {
+  const auto remaining_share = [this](double before_mm_s, double needed_n, double speed_mm_s) {
     const double slip_n = friction_n(speed_mm_s);
     const double hold_n = before_mm_s == 0.0 ? static_n_ : slip_n;
     return needed_n <= hold_n ? 0.0 : 1.0 - slip_n / needed_n;
   };
   if (model_.friction == FrictionShape::isotropic) {
-    return left(norm(velocity_mm_s), norm(stop_n), norm(free_mm_s)) * free_mm_s;
+    return remaining_share(norm(velocity_mm_s), norm(stop_n), norm(free_mm_s)) * free_mm_s;
   }
-  const auto on_axis = [&left](double before, double needed, double free) {
-    return left(before, std::abs(needed), std::abs(free)) * free;
+  const auto on_axis = [&](double before, double needed, double free) {
+    return remaining_share(before, std::abs(needed), std::abs(free)) * free;
   };
-  return on_each_axis(on_axis, velocity_mm_s, stop_n, free_mm_s);
+  return map_axes(on_axis, velocity_mm_s, stop_n, free_mm_s);
 }
 
 /// Two masses and the spring between them, by the trapezium rule, which neither damps nor excites
-/// their resonance; damping to the ground is implicit, as in a rigid device. docs/devices/models.md
-/// has the equations.
-void DeviceDynamics::move_structure(const Vec3& motor_n, const Outside& outside) noexcept {
+/// their resonance; damping to ground is implicit, as in a rigid device. Equations:
+/// docs/devices/models.md.
+void DeviceDynamics::move_structure(const Vec3& motor_n, const TipLoad& load) noexcept {
   const double joint = joint_;
   const double motor_mass = kMPerMm * (model_.mass_kg - tip_kg_) / tick_s_;
-  const double tip_mass = kMPerMm * (tip_kg_ + outside.mass_kg) / tick_s_;
-  const double motor_all = motor_mass + kMPerMm * model_.viscous_n_s_per_m + joint;
+  const double tip_mass = kMPerMm * (tip_kg_ + load.mass_kg) / tick_s_;
+  const double motor_coefficient = motor_mass + kMPerMm * model_.viscous_n_s_per_m + joint;
 
   const Vec3 spring_n = model_.structure.stiffness_n_per_mm * (motor_mm_ - tip_mm_) +
                         joint * (motor_mm_s_ - tip_mm_s_);
   const Vec3 on_motor_n = motor_n + motor_mass * motor_mm_s_ - spring_n;
-  const Vec3 on_tip_n = outside.force_n + tip_mass * tip_mm_s_ + spring_n;
-  const Vec3 tip_all =
-      on_each_axis([=](double d) { return tip_mass + d + joint; }, outside.damping_n_s_per_mm);
+  const Vec3 on_tip_n = load.force_n + tip_mass * tip_mm_s_ + spring_n;
+  const Vec3 tip_coefficients =
+      map_axes([=](double d) { return tip_mass + d + joint; }, load.damping_n_s_per_mm);
 
-  const auto stop = [=](double motor, double tip, double all) { return motor + joint * tip / all; };
-  const auto start = [=](double stop_n, double all) {
-    return stop_n / (motor_all - joint * joint / all);
+  const auto stop_force = [=](double motor, double tip, double c) {
+    return motor + joint * tip / c;
   };
-  const auto follow = [=](double tip, double motor_mm_s, double all) {
-    return (tip + joint * motor_mm_s) / all;
+  const auto motor_velocity = [=](double stop_n, double c) {
+    return stop_n / (motor_coefficient - joint * joint / c);
   };
-  const Vec3 stop_n = on_each_axis(stop, on_motor_n, on_tip_n, tip_all);
-  Vec3 motor_mm_s = on_each_axis(start, stop_n, tip_all);
-  if (has_friction_) motor_mm_s = after_friction(motor_mm_s_, stop_n, motor_mm_s);
-  const Vec3 tip_mm_s = on_each_axis(follow, on_tip_n, motor_mm_s, tip_all);
+  const auto tip_velocity = [=](double tip, double motor_mm_s, double c) {
+    return (tip + joint * motor_mm_s) / c;
+  };
+  const Vec3 stop_n = map_axes(stop_force, on_motor_n, on_tip_n, tip_coefficients);
+  Vec3 motor_mm_s = map_axes(motor_velocity, stop_n, tip_coefficients);
+  if (has_friction_) motor_mm_s = apply_friction(motor_mm_s_, stop_n, motor_mm_s);
+  const Vec3 tip_mm_s = map_axes(tip_velocity, on_tip_n, motor_mm_s, tip_coefficients);
 
   motor_mm_ = motor_mm_ + 0.5 * tick_s_ * (motor_mm_s_ + motor_mm_s);
   tip_mm_ = tip_mm_ + 0.5 * tick_s_ * (tip_mm_s_ + tip_mm_s);
@@ -177,13 +180,13 @@ void DeviceDynamics::move_structure(const Vec3& motor_n, const Outside& outside)
 
 void DeviceDynamics::update_reading() noexcept {
   if (noise_) {
-    const double deviation_mm = model_.planted.position_noise_mm;
-    read_mm_ = on_each_axis([&](double value) { return value + deviation_mm * noise_->normal(); },
-                            read_mm_);
+    const double deviation_mm = model_.planted_faults.position_noise_mm;
+    read_mm_ =
+        map_axes([&](double value) { return value + deviation_mm * noise_->normal(); }, read_mm_);
   }
   if (model_.position_step_mm > 0.0) read_mm_ = whole_steps(read_mm_, model_.position_step_mm);
   if (readings_mm_.empty()) {
-    read_mm_s_ = by_number(joint_ > 0.0 ? motor_mm_s_ : tip_mm_s_);
+    read_mm_s_ = copy_by_component(joint_ > 0.0 ? motor_mm_s_ : tip_mm_s_);
   } else {
     estimate_velocity();
   }
@@ -193,16 +196,16 @@ void DeviceDynamics::update_reading() noexcept {
 /// 6 / (n (n^2 - 1) T) * sum over i = 0 .. n - 1 of (2 i - (n - 1)) x_i.
 void DeviceDynamics::estimate_velocity() noexcept {
   const std::size_t n = readings_mm_.size();
-  const Vec3 now_mm = by_number(read_mm_);
+  const Vec3 now_mm = copy_by_component(read_mm_);
   readings_mm_[next_reading_] = now_mm;
   if (++next_reading_ == n) next_reading_ = 0;
   const double count = static_cast<double>(n);
   Vec3 sum_mm;
   double weight = 1.0 - count;
-  std::size_t place = next_reading_;  // the oldest
+  std::size_t index = next_reading_;  // the oldest
   for (std::size_t i = 0; i < n; ++i, weight += 2.0) {
-    sum_mm = sum_mm + weight * (readings_mm_[place] - now_mm);
-    if (++place == n) place = 0;
+    sum_mm = sum_mm + weight * (readings_mm_[index] - now_mm);
+    if (++index == n) index = 0;
   }
   read_mm_s_ = (6.0 / (count * (count * count - 1.0) * tick_s_)) * sum_mm;
 }
@@ -223,11 +226,12 @@ double ModelledDevice::time_s() const noexcept {
 }
 
 bool ModelledDevice::is_silent() const noexcept {
-  return model_.planted.silent_after_s > 0.0 && time_s() >= model_.planted.silent_after_s;
+  return model_.planted_faults.silent_after_s > 0.0 &&
+         time_s() >= model_.planted_faults.silent_after_s;
 }
 
 bool ModelledDevice::is_lost() const noexcept {
-  return model_.planted.lost_after_s > 0.0 && time_s() >= model_.planted.lost_after_s;
+  return model_.planted_faults.lost_after_s > 0.0 && time_s() >= model_.planted_faults.lost_after_s;
 }
 
 DeviceInfo ModelledDevice::info() const {
@@ -245,30 +249,30 @@ DeviceInfo ModelledDevice::info() const {
 DeviceStatus ModelledDevice::read(DeviceSample& sample) noexcept {
   if (is_lost()) return DeviceStatus::fault;
   if (!is_silent()) {
-    last_.position_mm = dynamics_.read_position_mm();
-    last_.velocity_mm_s = dynamics_.read_velocity_mm_s();
-    last_.sequence = static_cast<std::uint64_t>(tick_) + 1;
+    last_sample_.position_mm = dynamics_.read_position_mm();
+    last_sample_.velocity_mm_s = dynamics_.read_velocity_mm_s();
+    last_sample_.sequence = static_cast<std::uint64_t>(tick_) + 1;
   }
-  sample = last_;
+  sample = last_sample_;
   return DeviceStatus::ok;
 }
 
 DeviceStatus ModelledDevice::write(Vec3 force_n) noexcept {
-  const bool lost = is_lost();
-  const bool off = lost || is_silent() || halted_.load();
-  DeviceDynamics::Outside outside;
+  const bool is_link_lost = is_lost();
+  const bool is_off = is_link_lost || is_silent() || halted_.load();
+  DeviceDynamics::TipLoad load;
   const Vec3 position_mm = dynamics_.true_position_mm();
-  if (hand_) outside = hand_(time_s(), position_mm, dynamics_.true_velocity_mm_s());
+  if (hand_) load = hand_(time_s(), position_mm, dynamics_.true_velocity_mm_s());
   if (model_.workspace) {
-    if (const auto end_mm = end_of(*model_.workspace, position_mm)) {
-      outside.force_n = outside.force_n - kStopNPerMm * (position_mm - *end_mm);
-      outside.damping_n_s_per_mm =
-          outside.damping_n_s_per_mm + Vec3{kStopNSPerMm, kStopNSPerMm, kStopNSPerMm};
+    if (const auto end_mm = nearest_point(*model_.workspace, position_mm)) {
+      load.force_n = load.force_n - kStopNPerMm * (position_mm - *end_mm);
+      load.damping_n_s_per_mm =
+          load.damping_n_s_per_mm + Vec3{kStopNSPerMm, kStopNSPerMm, kStopNSPerMm};
     }
   }
-  dynamics_.tick(off ? Vec3{} : force_n, outside);
+  dynamics_.tick(is_off ? Vec3{} : force_n, load);
   ++tick_;
-  return lost ? DeviceStatus::fault : DeviceStatus::ok;
+  return is_link_lost ? DeviceStatus::fault : DeviceStatus::ok;
 }
 
 DeviceFault ModelledDevice::fault() const noexcept {

@@ -1,4 +1,4 @@
-/// \file Files of device models: every key, as it is read and written.
+/// \file Reads and writes device model files.
 #include "core/describe.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
@@ -16,8 +16,8 @@ namespace touchtrial::device {
 namespace {
 
 constexpr NumberRange kTimeS{.low = 0.0, .high = 1e6};
-constexpr NumberRange kPlaceMm{.low = -1000.0, .high = 1000.0};
-constexpr std::int64_t kMaxSeed = 9'007'199'254'740'991;  // the largest that JSON has exactly
+constexpr NumberRange kCornerMm{.low = -1000.0, .high = 1000.0};
+constexpr std::int64_t kMaxSeed = 9'007'199'254'740'991;  // the largest integer exact in JSON
 
 constexpr auto kFrictionShapes = std::to_array<Named<FrictionShape>>(
     {{"isotropic", FrictionShape::isotropic}, {"per_axis", FrictionShape::per_axis}});
@@ -51,7 +51,7 @@ void describe_numbers(ObjectIo& io, DeviceModel& model) {
   io.number("max_force_n", model.max_force_n, {0.0, 100.0},
             {"maximum norm of the force; 0: no limit"});
   io.number("continuous_force_n", model.continuous_force_n, {0.0, 100.0},
-            {"force that can be held for any time, at most `max_force_n`; 0: unknown"});
+            {"force that can be held indefinitely, at most `max_force_n`; 0: unknown"});
   io.number("lowpass_hz", model.lowpass_hz, {0.0, 5000.0},
             {"cut-off of the motors' first-order low-pass; 0: none"});
   io.number("max_stiffness_n_per_mm", model.max_stiffness_n_per_mm, {0.0, 100.0},
@@ -70,15 +70,15 @@ void describe_structure(ObjectIo& io, StructureModel& structure) {
 void describe_workspace(ObjectIo& io, Workspace& workspace) {
   io.member("least_mm",
             {.meaning = "left, bottom, back corner in the device frame", .required = true}, true,
-            [&](ValueIo& value) { value.axes(workspace.min_mm, kPlaceMm); });
+            [&](ValueIo& value) { value.axes(workspace.min_mm, kCornerMm); });
   io.member("greatest_mm",
             {.meaning = "the opposite corner, greater on each axis", .required = true}, true,
-            [&](ValueIo& value) { value.axes(workspace.max_mm, kPlaceMm); });
+            [&](ValueIo& value) { value.axes(workspace.max_mm, kCornerMm); });
   io.choice("shape", workspace.shape, kWorkspaceShapes,
             {"the whole box, or the ellipsoid inscribed in it"});
 }
 
-/// What has a provenance.
+/// Describes the parameters that have a provenance.
 void describe_parameters(ObjectIo& io, DeviceModel& model) {
   describe_numbers(io, model);
   io.choice("friction", model.friction, kFrictionShapes,
@@ -108,9 +108,9 @@ void describe_source(ObjectIo& io, Provenance& provenance) {
 }
 
 void describe_provenance(ObjectIo& io, std::map<std::string, Provenance>& provenance) {
-  DeviceModel any;
+  DeviceModel example;
   std::vector<std::string_view> keys =
-      keys_of([&any](ObjectIo& parameters) { describe_parameters(parameters, any); });
+      keys_of([&example](ObjectIo& parameters) { describe_parameters(parameters, example); });
   std::ranges::sort(keys);
   for (const std::string_view key : keys) {
     std::optional<Provenance> source;
@@ -118,12 +118,12 @@ void describe_provenance(ObjectIo& io, std::map<std::string, Provenance>& proven
       source = found->second;
     }
     io.optional(key, source, {"of this number"},
-                [](ValueIo& value, Provenance& one) { value.part(one, describe_source); });
+                [](ValueIo& value, Provenance& entry) { value.part(entry, describe_source); });
     if (source) provenance[std::string(key)] = *source;
   }
 }
 
-void describe_planted(ObjectIo& io, DeviceModel::Planted& planted) {
+void describe_planted(ObjectIo& io, DeviceModel::PlantedFaults& planted) {
   io.member("force_sign_scale", {"factors of the delivered force on each axis"}, true,
             [&](ValueIo& value) {
               value.axes(planted.force_sign_scale, {-10.0, 10.0});
@@ -138,7 +138,7 @@ void describe_planted(ObjectIo& io, DeviceModel::Planted& planted) {
   io.integer("seed", planted.seed, 0, kMaxSeed, {"of the noise"});
 }
 
-/// What parameters have against each other.
+/// Checks parameters against each other.
 void check_parameters(const JsonValue& place, const DeviceModel& model) {
   const auto refuse_if = [&](bool is_wrong, const char* pointer, const char* what) {
     if (is_wrong) place.refuse_below(pointer, what);
@@ -163,10 +163,10 @@ void check_parameters(const JsonValue& place, const DeviceModel& model) {
             "leaves one of the two without mass; give a number between 0 and 1");
 }
 
-/// What a running model needs.
+/// Describes the parameters that a simulation uses: no names, no sources.
 void describe_device(ObjectIo& io, DeviceModel& model) {
   describe_parameters(io, model);
-  io.part("planted", model.planted, {"faults of a broken device, for rehearsals only"},
+  io.part("planted", model.planted_faults, {"faults of a broken device, for rehearsals only"},
           describe_planted);
   io.rule([&model](const JsonValue& place, const JsonObject& /*object*/) {
     check_parameters(place, model);
@@ -182,7 +182,7 @@ void describe(ObjectIo& io, DeviceModel& model) {
             {.meaning = "the source of each number", .range = "by key: `source`, `confidence`"},
             !model.provenance.empty(),
             [&model](ValueIo& value) { value.part(model.provenance, describe_provenance); });
-  io.part("planted", model.planted, {"faults of a broken device, for rehearsals only"},
+  io.part("planted", model.planted_faults, {"faults of a broken device, for rehearsals only"},
           describe_planted);
   io.rule([&model](const JsonValue& place, const JsonObject& object) {
     if (model.name.empty()) object.at("name").refuse("is empty; give a name");
@@ -199,9 +199,9 @@ std::string_view name_of(Confidence confidence) noexcept {
 void check_device_model(const DeviceModel& model) {
   DeviceModel copy = model;
   const Description description = [&copy](ObjectIo& io) { describe_device(io, copy); };
-  const std::string text = written_as_described(description, description);
+  const std::string text = described_json(description, description);
   try {
-    read_described(parse_strict_json(text, "device model " + model.name), description);
+    read_settings(parse_strict_json(text, "device model " + model.name), description);
   } catch (const StudyError& error) {
     throw std::invalid_argument(error.what());
   }
@@ -209,7 +209,7 @@ void check_device_model(const DeviceModel& model) {
 
 DeviceModel parse_device_model(std::string_view text, const std::string& source) {
   DeviceModel model;
-  read_described(parse_strict_json(text, source), [&](ObjectIo& io) { describe(io, model); });
+  read_settings(parse_strict_json(text, source), [&](ObjectIo& io) { describe(io, model); });
   return model;
 }
 
@@ -221,21 +221,21 @@ DeviceModel read_device_model(const std::filesystem::path& file) {
 
 std::string device_model_json(const DeviceModel& model) {
   DeviceModel copy = model;
-  DeviceModel usual;
+  DeviceModel defaults;
   return json_text(nlohmann::ordered_json::parse(
-      written_as_described([&](ObjectIo& io) { describe(io, copy); },
-                           [&](ObjectIo& io) { describe(io, usual); }, WrittenKeys::changed)));
+      described_json([&](ObjectIo& io) { describe(io, copy); },
+                     [&](ObjectIo& io) { describe(io, defaults); }, WrittenKeys::changed)));
 }
 
 std::string device_model_schema() {
-  DeviceModel usual;
+  DeviceModel defaults;
   return annotated_schema("Touchtrial device model",
                           "The parameters of a device in virtual time. Every key but the name has "
                           "a default; a parameter of zero disables its stage.",
                           R"([{"name": "heavy", "mass_kg": 0.5, "coulomb_n": 0.2,
            "provenance": {"mass_kg": {"source": "kitchen scale", "confidence": "measured"}}},
           {"name": "reversed", "mass_kg": 0.1, "planted": {"force_sign_scale": [-1, 1, 1]}}])",
-                          [&](ObjectIo& io) { describe(io, usual); });
+                          [&](ObjectIo& io) { describe(io, defaults); });
 }
 
 const std::vector<DeviceModel>& shipped_device_models() {

@@ -10,7 +10,7 @@
 namespace touchtrial::device {
 namespace {
 
-/// Rounding must not refuse a plane that fits exactly.
+/// A plane that fits exactly must not be refused because of rounding.
 constexpr double kToleranceMm = 1e-9;
 
 Vec3 middle_of(const Workspace& workspace) {
@@ -25,7 +25,7 @@ struct Reach {
   WorkspaceShape shape;
 
   /// \param half_extent_mm  half the sides of a box about the plane's middle, device frame
-  [[nodiscard]] bool holds(Vec3 half_extent_mm) const {
+  [[nodiscard]] bool contains(Vec3 half_extent_mm) const {
     const Vec3 corner = offset_mm + half_extent_mm;
     if (shape == WorkspaceShape::box) {
       return corner.x <= half_mm.x + kToleranceMm && corner.y <= half_mm.y + kToleranceMm &&
@@ -37,7 +37,7 @@ struct Reach {
   }
 };
 
-Reach reach_about(Vec3 centre_mm, const Workspace& workspace) {
+Reach reach_around(Vec3 centre_mm, const Workspace& workspace) {
   const Vec3 offset = centre_mm - middle_of(workspace);
   return {{std::abs(offset.x), std::abs(offset.y), std::abs(offset.z)},
           0.5 * (workspace.max_mm - workspace.min_mm),
@@ -56,14 +56,15 @@ std::int64_t pixels_of(const PlaneGeometry& plane) {
   return std::int64_t{plane.width_px} * plane.height_px;
 }
 
-/// \return the part of the largest area, in whole pixels, that fits. A wider part is never higher,
-///   so one walk along the border of what fits finds it.
+/// \return the part with the largest area, in whole pixels, that fits. A wider part is never higher,
+///   so one pass with growing width and falling height finds it.
 PlaneGeometry largest_part(const PlaneGeometry& plane, const Reach& reach,
                            PlaneOrientation orientation) {
   PlaneGeometry best{plane.pitch_mm, 0, 0};
   PlaneGeometry part{plane.pitch_mm, plane.height_px, 1};
   for (; part.width_px <= plane.width_px; ++part.width_px) {
-    while (part.height_px > 0 && !reach.holds(half_extent_mm(part, orientation))) --part.height_px;
+    while (part.height_px > 0 && !reach.contains(half_extent_mm(part, orientation)))
+      --part.height_px;
     if (part.height_px == 0) break;
     if (pixels_of(part) > pixels_of(best)) best = part;
   }
@@ -74,14 +75,14 @@ std::string rounded_text(double number) {
   return number_text(std::round(number * 10.0) / 10.0);
 }
 
-/// Without the digits that a number in single precision does not have.
+/// Rounds to the digits of a number in single precision.
 std::string short_text(double number) {
   constexpr double kDigits = 1e6;
   return number_text(std::round(number * kDigits) / kDigits);
 }
 
-/// A number of the study's "rendering" beside the device's limit of it, 0: not known.
-struct Limited {
+/// A parameter of the study's "rendering", and the device's limit for it; limit 0: unknown.
+struct LimitedParameter {
   const char* key;
   const char* unit;
   double value;
@@ -111,14 +112,14 @@ WorkspaceFit fit_plane(const PlaneGeometry& plane, const std::optional<Workspace
   placement.origin_mm =
       centre_mm - to_device_direction({plane.width_mm() / 2.0, plane.height_mm() / 2.0, 0.0},
                                       placement.orientation);
-  const Reach reach = reach_about(centre_mm, *workspace);
-  const bool fits = reach.holds(half_extent_mm(plane, placement.orientation));
+  const Reach reach = reach_around(centre_mm, *workspace);
+  const bool fits = reach.contains(half_extent_mm(plane, placement.orientation));
   return {fits, placement, fits ? plane : largest_part(plane, reach, placement.orientation)};
 }
 
 std::string misfit_text(const std::string& device, const PlaneGeometry& plane,
                         const Workspace& workspace, const WorkspaceFit& fit) {
-  const std::string offer =
+  const std::string remedy =
       fit.largest.width_px == 0
           ? "no part of it fits around that middle; move placement/centre_mm in the device settings"
           : "crop the pictures to " + std::to_string(fit.largest.width_px) + " x " +
@@ -128,7 +129,7 @@ std::string misfit_text(const std::string& device, const PlaneGeometry& plane,
                 " mm), turn the plane, or use a larger device";
   return one_line(device + ": the plane of " + size_text(plane) +
                   " does not fit its workspace of " + workspace_text(workspace) + " with " +
-                  number_text(kWorkspaceMarginMm) + " mm around it; " + offer);
+                  number_text(kWorkspaceMarginMm) + " mm around it; " + remedy);
 }
 
 std::string rendering_limits_text(const DeviceInfo& device) {
@@ -144,29 +145,30 @@ std::string rendering_limits_text(const DeviceInfo& device) {
 }
 
 std::string check_stiffness(const RenderedStiffness& rendered, const DeviceInfo& device) {
-  const std::array limited = {
-      Limited{"stiffness_n_per_mm", "N/mm", rendered.wall_n_per_mm, device.max_stiffness_n_per_mm},
-      Limited{"texture_stiffness_n_per_mm", "N/mm", rendered.texture_n_per_mm,
-              device.max_stiffness_n_per_mm},
-      Limited{"damping_n_s_per_mm", "N s/mm", rendered.damping_n_s_per_mm,
-              device.max_damping_n_s_per_mm}};
+  const std::array parameters = {
+      LimitedParameter{"stiffness_n_per_mm", "N/mm", rendered.wall_n_per_mm,
+                       device.max_stiffness_n_per_mm},
+      LimitedParameter{"texture_stiffness_n_per_mm", "N/mm", rendered.texture_n_per_mm,
+                       device.max_stiffness_n_per_mm},
+      LimitedParameter{"damping_n_s_per_mm", "N s/mm", rendered.damping_n_s_per_mm,
+                       device.max_damping_n_s_per_mm}};
   std::string warning;
-  for (const Limited& one : limited) {
-    if (one.limit <= 0.0 || one.value <= kStiffnessShare * one.limit) continue;
-    const std::string words =
-        "rendering." + std::string(one.key) + " of " + short_text(one.value) + " " + one.unit;
-    // Libraries give their limits in single precision.
-    if (one.value > one.limit * (1.0 + 1e-6)) {
-      throw DeviceError(one_line(device.name + ": the study's " + words +
-                                 " is beyond the device's own limit of " + short_text(one.limit) +
+  for (const auto& [key, unit, value, limit] : parameters) {
+    if (limit <= 0.0 || value <= kStiffnessShare * limit) continue;
+    const std::string parameter_text =
+        "rendering." + std::string(key) + " of " + short_text(value) + " " + unit;
+    // Libraries report limits in single precision.
+    if (value > limit * (1.0 + 1e-6)) {
+      throw DeviceError(one_line(device.name + ": the study's " + parameter_text +
+                                 " is beyond the device's own limit of " + short_text(limit) +
                                  ", where it may begin to oscillate; lower it in the study file "
                                  "before the study begins, or use a stiffer device"));
     }
     if (warning.empty()) {
-      warning = one_line(device.name + ": the study's " + words +
-                         " is at the device's own limit of " + short_text(one.limit) +
+      warning = one_line(device.name + ": the study's " + parameter_text +
+                         " is at the device's own limit of " + short_text(limit) +
                          " and may vibrate; feel it with touchtrial device test, or plan at most " +
-                         short_text(kStiffnessShare * one.limit));
+                         short_text(kStiffnessShare * limit));
     }
   }
   return warning;

@@ -22,7 +22,7 @@ int load_flags(Unload unload, Binding binding) {
          (unload == Unload::never ? RTLD_NODELETE : 0);
 }
 
-/// \return the linker's reason without the library's name, with which our message begins
+/// \return the linker's reason without the library's name, which the error message already contains
 std::string reason_for(const std::string& library) {
   const char* text = dlerror();
   if (text == nullptr) return "no reason given";
@@ -30,7 +30,7 @@ std::string reason_for(const std::string& library) {
   return reason.starts_with(library + ": ") ? reason.substr(library.size() + 2) : reason;
 }
 
-/// Runs in the child: crashes are silent, and none of the parent's exit code runs.
+/// Runs in the child process. Crashes are silent, and the parent's exit handlers do not run.
 [[noreturn]] void load_and_end(const char* library, Binding binding) {
   for (const int crash : std::array{SIGSEGV, SIGBUS, SIGABRT, SIGILL, SIGFPE}) {
     signal(crash, SIG_DFL);
@@ -60,7 +60,7 @@ void check_loads(const std::filesystem::path& library, const std::string& remedy
   const std::string name = library.string();
   const pid_t child = fork();
   if (child == 0) load_and_end(name.c_str(), binding);
-  if (child < 0) return;  // without a child, loading itself will show
+  if (child < 0) return;  // without a test, loading the library itself reports the error
   const std::optional<int> status = status_of(child);
   if (status && !WIFSIGNALED(*status)) return;
   throw DeviceError(one_line(name + (status ? ": crashes" : ": hangs") +
@@ -88,8 +88,8 @@ void* DynamicLibrary::address_if_any(const char* name) const noexcept {
 }
 
 void* DynamicLibrary::address(const char* name) const {
-  void* found = address_if_any(name);
-  if (found != nullptr) return found;
+  void* symbol = address_if_any(name);
+  if (symbol != nullptr) return symbol;
   throw DeviceError(one_line(name_ + ": has no function " + name + "; " + remedy_));
 }
 

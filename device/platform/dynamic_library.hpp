@@ -12,12 +12,11 @@ enum class Unload {
   never,  ///< for libraries that break when they are loaded a second time
 };
 
-/// When the library's references are resolved, and whether its symbols are global.
+/// When undefined symbols of the library are resolved, and whether its own symbols are global.
 enum class Binding {
-  /// All at once, so that none is missing later during a session; symbols are local.
+  /// All at once, so that none is missing during a session; its own symbols are local.
   at_once,
-  /// Lazily, with global symbols: for libraries with unresolved references, and with their own
-  /// plug-ins.
+  /// Lazily, with global symbols: for libraries that have unresolved references or plug-ins.
   as_needed,
 };
 
@@ -40,15 +39,15 @@ class DynamicLibrary {
   [[nodiscard]] Function* function(const char* name) const {
     return reinterpret_cast<Function*>(address(name));
   }
-  /// The same, written to a pointer of the function's type.
+  /// The same, with the type deduced from the pointer.
   template <typename Function>
-  void find(const char* name, Function*& found) const {
-    found = function<Function>(name);
+  void find(const char* name, Function*& pointer) const {
+    pointer = function<Function>(name);
   }
-  /// \param found  null if the library does not have it
+  /// \param pointer  null if the library does not have it
   template <typename Function>
-  void find_if_any(const char* name, Function*& found) const noexcept {
-    found = reinterpret_cast<Function*>(address_if_any(name));
+  void find_if_any(const char* name, Function*& pointer) const noexcept {
+    pointer = reinterpret_cast<Function*>(address_if_any(name));
   }
 
  private:

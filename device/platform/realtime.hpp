@@ -1,4 +1,4 @@
-/// \file Real time: scheduling, the monotonic clock, and the region in which no code may block. One
+/// \file Real-time scheduling, the monotonic clock, and a marker for code that must not block. One
 ///   source file per platform.
 #pragma once
 
@@ -22,7 +22,7 @@ enum class SchedulingPolicy {
 struct SchedulingRequest {
   SchedulingPolicy policy = SchedulingPolicy::fifo;
   int priority = 80;        ///< of fifo, 1 to 99; clamped to the system's range
-  bool lock_memory = true;  ///< the whole process, so that the loop has no page faults
+  bool lock_memory = true;  ///< of the whole process, so that the loop has no page faults
 };
 
 /// The scheduling that it obtained.
@@ -35,20 +35,21 @@ struct SchedulingObtained {
   std::string reason;
 };
 
-/// Requests scheduling for the calling thread and prefaults its stack. A thread without real time
-/// gets the most precise timers of ordinary threads. Memory is locked for the whole process and
-/// stays locked. What the system refuses is unchanged and reported.
+/// Requests scheduling for the calling thread and prefaults its stack. A thread without real-time
+/// scheduling gets the most precise timers of ordinary threads. Memory is locked for the whole
+/// process and stays locked. The result reports what the system refused.
 [[nodiscard]] SchedulingObtained request_scheduling(const SchedulingRequest& request);
 
 /// \return the time of the monotonic clock. No allocation, lock or exception.
 [[nodiscard]] std::chrono::nanoseconds monotonic_now() noexcept;
 
-/// Sleeps until this time of `monotonic_now`, through any signal; returns at once if it is over.
+/// Sleeps until this time of `monotonic_now`, regardless of signals; returns at once if it has
+/// passed.
 void sleep_until(std::chrono::nanoseconds time) noexcept;
 
-/// Marks code in which nothing may allocate, lock or do I/O: the calling thread is in the servo's
-/// loop during its lifetime. The servo enters once per run, so it costs nothing; tests check the
-/// allocations and locks of threads inside.
+/// Marks the calling thread as inside the servo loop, where code must not allocate, lock or do I/O.
+/// The servo enters once per run, so the cost is negligible; tests detect allocations and locks
+/// inside.
 class RealtimeRegion {
  public:
   RealtimeRegion() noexcept { ++depth_; }
@@ -56,7 +57,7 @@ class RealtimeRegion {
   RealtimeRegion(const RealtimeRegion&) = delete;
   RealtimeRegion& operator=(const RealtimeRegion&) = delete;
 
-  /// \return whether the calling thread is inside one. Allocates nothing.
+  /// \return whether the calling thread is inside a region. Allocates nothing.
   [[nodiscard]] static bool entered() noexcept { return depth_ > 0; }
 
  private:

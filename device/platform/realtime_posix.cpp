@@ -18,10 +18,10 @@
 namespace touchtrial::device {
 namespace {
 
-constexpr std::size_t kStackTouched = std::size_t{256} * 1024;
+constexpr std::size_t kPrefaultedStackBytes = std::size_t{256} * 1024;
 constexpr long kNanosecondsPerSecond = 1'000'000'000;
 
-std::string because(int error) {
+std::string errno_message(int error) {
   return std::generic_category().message(error);
 }
 
@@ -31,18 +31,18 @@ void add_reason(SchedulingObtained& obtained, const std::string& reason) {
 
 /// Prefaults the pages of the stack below this call, which the loop will use.
 [[gnu::noinline]] void touch_stack() noexcept {
-  std::array<volatile std::byte, kStackTouched> room;
+  std::array<volatile std::byte, kPrefaultedStackBytes> stack;
   constexpr std::size_t kMinPage = 4096;
-  for (std::size_t i = 0; i < room.size(); i += kMinPage) room[i] = std::byte{};
+  for (std::size_t i = 0; i < stack.size(); i += kMinPage) stack[i] = std::byte{};
 }
 
-void ask_for_fifo(int priority, SchedulingObtained& obtained) {
+void request_fifo(int priority, SchedulingObtained& obtained) {
   sched_param param{};
   param.sched_priority =
       std::clamp(priority, sched_get_priority_min(SCHED_FIFO), sched_get_priority_max(SCHED_FIFO));
   const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &param);
   if (error != 0) {
-    add_reason(obtained, "SCHED_FIFO was refused (" + because(error) +
+    add_reason(obtained, "SCHED_FIFO was refused (" + errno_message(error) +
                              "): give the user an rtprio limit in /etc/security/limits.d");
     return;
   }
@@ -52,21 +52,21 @@ void ask_for_fifo(int priority, SchedulingObtained& obtained) {
 
 /// With a limit, later mappings beyond it would fail, so only current memory is locked. A
 /// privileged process removes the limit.
-int lock_flags() noexcept {
-  const rlimit none{RLIM_INFINITY, RLIM_INFINITY};
+int choose_lock_flags() noexcept {
+  const rlimit no_limit{RLIM_INFINITY, RLIM_INFINITY};
   rlimit limit{};
   const bool unlimited =
-      setrlimit(RLIMIT_MEMLOCK, &none) == 0 ||
+      setrlimit(RLIMIT_MEMLOCK, &no_limit) == 0 ||
       (getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY);
   return unlimited ? MCL_CURRENT | MCL_FUTURE : MCL_CURRENT;
 }
 
 void lock_memory(SchedulingObtained& obtained) {
-  if (mlockall(lock_flags()) == 0) {
+  if (mlockall(choose_lock_flags()) == 0) {
     obtained.memory_locked = true;
     return;
   }
-  add_reason(obtained, "memory could not be locked (" + because(errno) +
+  add_reason(obtained, "memory could not be locked (" + errno_message(errno) +
                            "): raise the user's memlock limit in /etc/security/limits.d");
 }
 
@@ -82,7 +82,7 @@ void sharpen_timers() noexcept {
 
 SchedulingObtained request_scheduling(const SchedulingRequest& request) {
   SchedulingObtained obtained;
-  if (request.policy == SchedulingPolicy::fifo) ask_for_fifo(request.priority, obtained);
+  if (request.policy == SchedulingPolicy::fifo) request_fifo(request.priority, obtained);
   if (obtained.policy == SchedulingPolicy::other) sharpen_timers();
   if (request.lock_memory) lock_memory(obtained);
   touch_stack();

@@ -1,4 +1,4 @@
-/// \file Sets the force to zero however the program ends. One source file per platform.
+/// \file Sets the force to zero when signals or crashes end the program. One source file per platform.
 #pragma once
 
 #include "device/haptic_device.hpp"
@@ -12,8 +12,8 @@ namespace touchtrial::device {
 ///
 /// A request to end (SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXCPU) or to suspend (SIGTSTP, which is
 /// Ctrl-Z, SIGTTIN, SIGTTOU) halts the device, requests an emergency stop of the servo, and stores
-/// the signal, so that the command can clean up and exit with `exit_code`. A second such signal has
-/// its usual effect after 20 ms.
+/// the signal, so that the command can clean up and exit with `exit_code`. After a second such
+/// signal the default action follows within 20 ms.
 ///
 /// A crash (SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, or SIGQUIT, which is Ctrl-\) and
 /// std::terminate halt the device. After 20 ms, in which the driver's own thread sends zeros, the
@@ -29,18 +29,17 @@ class StopOnSignals {
   StopOnSignals(const StopOnSignals&) = delete;
   StopOnSignals& operator=(const StopOnSignals&) = delete;
 
-  /// Sets a function that restores something, for instance the terminal, before a second signal or
-  /// a crash ends the program. The handler calls it after halting the device, so it must be
-  /// async-signal-safe. Thread-safe.
-  /// \param put_back  null: none
-  static void set_crash_cleanup(void (*put_back)() noexcept) noexcept;
+  /// Sets a function that restores, for instance, the terminal before a second signal or a crash
+  /// ends the program. A signal handler calls it, so it must be async-signal-safe. Thread-safe.
+  /// \param cleanup  null: none
+  static void set_crash_cleanup(void (*cleanup)() noexcept) noexcept;
 
   /// May be called from any thread.
   /// \return whether the program was asked to end
-  [[nodiscard]] static bool asked() noexcept;
-  /// \return the exit code that a shell expects: 128 + the signal's number; 0 if not asked
+  [[nodiscard]] static bool stop_requested() noexcept;
+  /// \return the exit code that a shell expects: 128 + the signal's number; 0 otherwise
   [[nodiscard]] static int exit_code() noexcept;
-  /// \return one line, for instance "stopped by SIGTERM; the force is zero"; empty if not asked
+  /// \return one line, for instance "stopped by SIGTERM; the force is zero"; empty otherwise
   [[nodiscard]] static std::string message();
 };
 

@@ -13,11 +13,11 @@
 namespace touchtrial::device {
 namespace {
 
-constexpr long kTimeToSendNs = 20'000'000;
-constexpr int kExitBySignal = 128;
-// Including signals that would suspend the program, because the motors would hold their last force.
-constexpr std::array kAskSignals = {SIGINT,  SIGTERM, SIGHUP,  SIGPIPE,
-                                    SIGXCPU, SIGTSTP, SIGTTIN, SIGTTOU};
+constexpr long kZeroForceWaitNs = 20'000'000;
+constexpr int kSignalExitBase = 128;
+// These include the signals that suspend a program, because the motors would hold their last force.
+constexpr std::array kStopSignals = {SIGINT,  SIGTERM, SIGHUP,  SIGPIPE,
+                                     SIGXCPU, SIGTSTP, SIGTTIN, SIGTTOU};
 constexpr std::array kCrashSignals = {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGQUIT};
 
 // Handlers access only lock-free atomics.
@@ -30,12 +30,12 @@ static_assert(std::atomic<ServoControl*>::is_always_lock_free);
 static_assert(std::atomic<int>::is_always_lock_free);
 static_assert(std::atomic<void (*)() noexcept>::is_always_lock_free);
 
-struct Earlier {
-  std::array<struct sigaction, kAskSignals.size()> of_asks{};
-  std::array<struct sigaction, kCrashSignals.size()> of_crashes{};
+struct PreviousHandlers {
+  std::array<struct sigaction, kStopSignals.size()> stop{};
+  std::array<struct sigaction, kCrashSignals.size()> crash{};
   std::terminate_handler terminate = nullptr;
 };
-Earlier earlier;
+PreviousHandlers previous_handlers;
 
 void halt() noexcept {
   HapticDevice* device = device_to_halt.load();
@@ -45,40 +45,40 @@ void halt() noexcept {
 }
 
 void run_crash_cleanup() noexcept {
-  void (*const act)() noexcept = crash_cleanup.load();
-  if (act != nullptr) act();
+  void (*const cleanup)() noexcept = crash_cleanup.load();
+  if (cleanup != nullptr) cleanup();
 }
 
 void wait_for_driver() noexcept {
-  timespec left{0, kTimeToSendNs};
-  while (nanosleep(&left, &left) != 0 && errno == EINTR) {
+  timespec remaining{0, kZeroForceWaitNs};
+  while (nanosleep(&remaining, &remaining) != 0 && errno == EINTR) {
   }
 }
 
 template <std::size_t n>
-void put_back(const std::array<int, n>& signals,
-              const std::array<struct sigaction, n>& actions) noexcept {
+void restore_handlers(const std::array<int, n>& signals,
+                      const std::array<struct sigaction, n>& actions) noexcept {
   for (std::size_t i = 0; i < n; ++i) sigaction(signals[i], &actions[i], nullptr);
 }
 
-extern "C" void on_ask(int signal) {
+extern "C" void on_stop_signal(int signal) {
   const int error = errno;
   halt();
-  int none = 0;
-  if (!first_signal.compare_exchange_strong(none, signal)) {
+  int expected = 0;
+  if (!first_signal.compare_exchange_strong(expected, signal)) {
     wait_for_driver();
     run_crash_cleanup();
-    put_back(kAskSignals, earlier.of_asks);
+    restore_handlers(kStopSignals, previous_handlers.stop);
     raise(signal);  // delivered when this handler returns
   }
   errno = error;
 }
 
-extern "C" void on_crash(int signal) {
+extern "C" void on_crash_signal(int signal) {
   halt();
   wait_for_driver();
   run_crash_cleanup();
-  put_back(kCrashSignals, earlier.of_crashes);
+  restore_handlers(kCrashSignals, previous_handlers.crash);
   raise(signal);
 }
 
@@ -86,53 +86,53 @@ extern "C" void on_crash(int signal) {
   halt();
   wait_for_driver();
   run_crash_cleanup();
-  if (earlier.terminate != nullptr) earlier.terminate();
+  if (previous_handlers.terminate != nullptr) previous_handlers.terminate();
   std::abort();
 }
 
 template <std::size_t n>
-void handle(const std::array<int, n>& signals, void (*handler)(int),
-            std::array<struct sigaction, n>& before) noexcept {
+void install_handlers(const std::array<int, n>& signals, void (*handler)(int),
+                      std::array<struct sigaction, n>& previous) noexcept {
   struct sigaction action {};
   action.sa_handler = handler;
   sigfillset(&action.sa_mask);
   action.sa_flags = SA_RESTART;
-  for (std::size_t i = 0; i < n; ++i) sigaction(signals[i], &action, &before[i]);
+  for (std::size_t i = 0; i < n; ++i) sigaction(signals[i], &action, &previous[i]);
 }
 
 }  // namespace
 
 StopOnSignals::StopOnSignals(HapticDevice& device, ServoControl& control) {
-  HapticDevice* none = nullptr;
-  if (!device_to_halt.compare_exchange_strong(none, &device)) {
-    throw std::logic_error("StopOnSignals: there is another one");
+  HapticDevice* expected = nullptr;
+  if (!device_to_halt.compare_exchange_strong(expected, &device)) {
+    throw std::logic_error("StopOnSignals: only one may exist at a time");
   }
   servo_to_stop.store(&control);
   first_signal.store(0);
-  earlier.terminate = std::set_terminate(on_terminate);
-  handle(kAskSignals, on_ask, earlier.of_asks);
-  handle(kCrashSignals, on_crash, earlier.of_crashes);
+  previous_handlers.terminate = std::set_terminate(on_terminate);
+  install_handlers(kStopSignals, on_stop_signal, previous_handlers.stop);
+  install_handlers(kCrashSignals, on_crash_signal, previous_handlers.crash);
 }
 
 StopOnSignals::~StopOnSignals() {
-  put_back(kCrashSignals, earlier.of_crashes);
-  put_back(kAskSignals, earlier.of_asks);
-  std::set_terminate(earlier.terminate);
+  restore_handlers(kCrashSignals, previous_handlers.crash);
+  restore_handlers(kStopSignals, previous_handlers.stop);
+  std::set_terminate(previous_handlers.terminate);
   servo_to_stop.store(nullptr);
   device_to_halt.store(nullptr);
 }
 
-void StopOnSignals::set_crash_cleanup(void (*put_back)() noexcept) noexcept {
-  crash_cleanup.store(put_back);
+void StopOnSignals::set_crash_cleanup(void (*cleanup)() noexcept) noexcept {
+  crash_cleanup.store(cleanup);
 }
 
-bool StopOnSignals::asked() noexcept {
+bool StopOnSignals::stop_requested() noexcept {
   return first_signal.load() != 0;
 }
 
 int StopOnSignals::exit_code() noexcept {
   const int signal = first_signal.load();
-  return signal == 0 ? 0 : kExitBySignal + signal;
+  return signal == 0 ? 0 : kSignalExitBase + signal;
 }
 
 std::string StopOnSignals::message() {
@@ -144,11 +144,11 @@ std::string StopOnSignals::message() {
     case SIGTERM:
       return "stopped by SIGTERM; the force is zero";
     case SIGHUP:
-      return "stopped by SIGHUP (the terminal went away); the force is zero";
+      return "stopped by SIGHUP (the terminal was closed); the force is zero";
     case SIGPIPE:
       return "stopped by SIGPIPE (the output's reader has exited); the force is zero";
     case SIGXCPU:
-      return "stopped by SIGXCPU (the limit of processor time); the force is zero";
+      return "stopped by SIGXCPU (processor time limit); the force is zero";
     default:
       return "stopped instead of suspended, because a suspended program cannot switch the force "
              "off; the force is zero";

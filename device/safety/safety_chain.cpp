@@ -5,7 +5,7 @@
 namespace touchtrial::device {
 
 SafetyChain::SafetyChain(const SafetyLimits& limits, double tick_s) noexcept
-    : may_engage_(is_sound(limits) && tick_s > 0.0 && std::isfinite(tick_s)),
+    : may_engage_(are_valid(limits) && tick_s > 0.0 && std::isfinite(tick_s)),
       max_support_n_(limits.max_support_n),
       gate_(limits.engage_force_n),
       velocity_(limits.max_speed_mm_s, tick_s),

@@ -14,7 +14,7 @@ namespace touchtrial::device {
 /// The chain's action on a force.
 enum class SafetyVerdict {
   passed,   ///< sent as computed
-  limited,  ///< shortened or suppressed by a link of the chain, or by the device's own limit
+  limited,  ///< reduced or suppressed by a link of the chain, or by the device's own limit
   fault,    ///< latched fault: zero is sent until `rearm`
 };
 
@@ -25,7 +25,7 @@ enum class SafetyFault {
   emergency_stop,   ///< requested by a person or a signal
   not_ready,        ///< the device lost its homing while force was on
   overspeed,        ///< faster than a hand
-  stale_sample,     ///< the device gives no new readings
+  stale_sample,     ///< the device delivers no new readings
   frozen_encoders,  ///< new readings whose position never changes under force
   stalled,          ///< the servo itself stalled (watchdog)
   device,           ///< the device reported a fault, see DeviceFault
@@ -37,22 +37,22 @@ struct SafeForce {
   Vec3 rendered_n{};  ///< the part of force_n that is not the device's support
 };
 
-/// In this order: finite check, latched fault, homed and armed, small-force gate on engaging,
-/// velocity trip, freshness of the readings and frozen encoders, thermal budget, ramp-up, norm
-/// limit, slew limit; then the support is added, up to its own limit. A fault skips the slew limit:
-/// the force is zero at once, and until `rearm`. Belongs to the servo thread.
+/// The chain, in this order: finite check, latched fault, homed and armed, small-force gate on
+/// engaging, velocity trip, freshness of the readings and frozen encoders, thermal budget, ramp-up,
+/// norm limit, slew limit; then the support is added, up to its own limit. A fault skips the slew
+/// limit: the force is zero at once, and until `rearm`. Belongs to the servo thread.
 class SafetyChain {
  public:
   /// \param limits  invalid ones let no force pass
-  /// \param tick_s  of the servo, finite, > 0, else no force passes
+  /// \param tick_s  of the servo, finite, > 0; otherwise no force passes
   explicit SafetyChain(const SafetyLimits& limits, double tick_s = 0.001) noexcept;
 
-  /// A device that is not ready before engaging gets zero, without a fault. No allocation, lock or
-  /// exception; about 10 ns.
+  /// Until the device is ready and the gate opens, the force is zero, without a fault. No
+  /// allocation, lock or exception; about 10 ns.
   /// \param force_n  as rendered: gate, norm limit and slew limit apply only to it
-  /// \param ticks  since the last call, above 1 after an overrun; less counts as 1
-  /// \param support_n  HapticDevice::support_force_n: within SafetyLimits::max_support_n it is
-  ///   added to the rendered force. The gate and the ramp hold for both, and both warm the motors
+  /// \param ticks  since the last call; more than 1 after an overrun, less than 1 counts as 1
+  /// \param support_n  HapticDevice::support_force_n: limited to SafetyLimits::max_support_n and
+  ///   added to the rendered force. The gate and the ramp apply to both, and both warm the motors
   /// \return the force that may be sent for this tick
   [[nodiscard]] SafeForce check(Vec3 force_n, const DeviceSample& sample, std::int64_t ticks = 1,
                                 Vec3 support_n = {}) noexcept;
@@ -72,11 +72,12 @@ class SafetyChain {
   [[nodiscard]] Vec3 sent_n() const noexcept { return sent_n_; }
 
  private:
-  [[nodiscard]] bool is_engaged(double force_squared_n2, const DeviceSample& sample) noexcept;
-  [[nodiscard]] SafetyFault fault_in(const DeviceSample& sample, double ticks) noexcept;
-  [[nodiscard]] SafeForce stopped() noexcept;
-  [[nodiscard]] SafeForce limited(Vec3 force_n, double force_squared_n2, Vec3 support_n) noexcept;
-  /// Without a support, the force itself, preserving the signs of zeros.
+  [[nodiscard]] bool try_engage(double force_squared_n2, const DeviceSample& sample) noexcept;
+  [[nodiscard]] SafetyFault find_fault(const DeviceSample& sample, double ticks) noexcept;
+  [[nodiscard]] SafeForce stop() noexcept;
+  [[nodiscard]] SafeForce apply_limits(Vec3 force_n, double force_squared_n2,
+                                       Vec3 support_n) noexcept;
+  /// Without support it returns the force itself, which preserves the signs of zeros.
   [[nodiscard]] static Vec3 sum_of(Vec3 force_n, Vec3 support_n) noexcept {
     return support_n == Vec3{} ? force_n : force_n + support_n;
   }
@@ -100,13 +101,13 @@ inline void SafetyChain::trip(SafetyFault fault) noexcept {
   if (fault_ == SafetyFault::none) fault_ = fault;
 }
 
-inline SafeForce SafetyChain::stopped() noexcept {
+inline SafeForce SafetyChain::stop() noexcept {
   slew_.drop();
   sent_n_ = {};
   return {{}, SafetyVerdict::fault};
 }
 
-inline bool SafetyChain::is_engaged(double force_squared_n2, const DeviceSample& sample) noexcept {
+inline bool SafetyChain::try_engage(double force_squared_n2, const DeviceSample& sample) noexcept {
   if (gate_.is_open()) return true;
   if (!may_engage_ || !sample.ready || !gate_.try_open(force_squared_n2)) return false;
   freshness_.start(sample.sequence);
@@ -116,7 +117,7 @@ inline bool SafetyChain::is_engaged(double force_squared_n2, const DeviceSample&
   return true;
 }
 
-inline SafetyFault SafetyChain::fault_in(const DeviceSample& sample, double ticks) noexcept {
+inline SafetyFault SafetyChain::find_fault(const DeviceSample& sample, double ticks) noexcept {
   if (!sample.ready) return SafetyFault::not_ready;
   if (velocity_.is_exceeded(sample, ticks)) return SafetyFault::overspeed;
   if (freshness_.is_stale(sample.sequence, ticks)) return SafetyFault::stale_sample;
@@ -126,8 +127,8 @@ inline SafetyFault SafetyChain::fault_in(const DeviceSample& sample, double tick
 }
 
 /// Ramp, thermal budget, norm limit and slew limit; then the support.
-inline SafeForce SafetyChain::limited(Vec3 force_n, double force_squared_n2,
-                                      Vec3 support_n) noexcept {
+inline SafeForce SafetyChain::apply_limits(Vec3 force_n, double force_squared_n2,
+                                           Vec3 support_n) noexcept {
   const double share = ramp_.next_share();
   const double limit_n = thermal_.limit_n();
   // Fast path for an unlimited force without ramp or support, which is nearly every one; the steps
@@ -137,10 +138,10 @@ inline SafeForce SafetyChain::limited(Vec3 force_n, double force_squared_n2,
     sent_n_ = force_n;
     return {force_n, SafetyVerdict::passed, force_n};
   }
-  const Vec3 carried_n = share * within_norm(support_n, max_support_n_);
-  const Vec3 limited_n = within_norm(share * force_n, thermal_.limit_n(norm(carried_n)));
-  const Vec3 rendered_n = slew_.towards(limited_n);
-  sent_n_ = sum_of(rendered_n, carried_n);
+  const Vec3 limited_support_n = share * limit_norm(support_n, max_support_n_);
+  const Vec3 limited_n = limit_norm(share * force_n, thermal_.limit_n(norm(limited_support_n)));
+  const Vec3 rendered_n = slew_.step_towards(limited_n);
+  sent_n_ = sum_of(rendered_n, limited_support_n);
   return {sent_n_, rendered_n == force_n ? SafetyVerdict::passed : SafetyVerdict::limited,
           rendered_n};
 }
@@ -152,14 +153,14 @@ inline SafeForce SafetyChain::check(Vec3 force_n, const DeviceSample& sample, st
   thermal_.heat(dot(sent_n_, sent_n_), elapsed);
   if (!is_finite_state(force_squared_n2 + dot(support_n, support_n), sample))
     trip(SafetyFault::not_finite);
-  if (faulted()) return stopped();
+  if (faulted()) return stop();
   const bool was_engaged = gate_.is_open();
-  if (!is_engaged(force_squared_n2, sample)) {
+  if (!try_engage(force_squared_n2, sample)) {
     return {{}, force_n == Vec3{} ? SafetyVerdict::passed : SafetyVerdict::limited};
   }
-  if (was_engaged) trip(fault_in(sample, elapsed));
-  if (faulted()) return stopped();
-  return limited(force_n, force_squared_n2, support_n);
+  if (was_engaged) trip(find_fault(sample, elapsed));
+  if (faulted()) return stop();
+  return apply_limits(force_n, force_squared_n2, support_n);
 }
 
 }  // namespace touchtrial::device

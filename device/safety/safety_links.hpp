@@ -20,8 +20,8 @@ namespace touchtrial::device {
 /// Tolerance for whole numbers of ticks: 0.010 / 0.001 is 10 ticks, not 11.
 inline constexpr double kTickRounding = 1e-6;
 
-/// \return whether force, position and velocity are finite. The sum of squares also overflows for
-///   absurdly large values, so those count as not finite.
+/// \return whether force, position and velocity are finite. Values whose squares overflow also count
+///   as not finite.
 [[nodiscard]] inline bool is_finite_state(double force_squared_n2,
                                           const DeviceSample& sample) noexcept {
   const double all = force_squared_n2 + dot(sample.position_mm, sample.position_mm) +
@@ -50,9 +50,9 @@ class EngageGate {
   bool open_ = false;
 };
 
-/// Trips on motion faster than a hand's: by the reported speed, and by the change of position since
-/// an earlier reading. Readings come from another thread or a bus, and two may arrive together, so
-/// changes are taken over at least kWindowS.
+/// Trips on motion faster than a hand's: by the reported speed, or by the change of position since
+/// an earlier reading. Two readings from another thread or a bus may arrive together, so the change
+/// is measured over at least kWindowS.
 class VelocityTrip {
  public:
   static constexpr double kWindowS = 0.001;
@@ -66,7 +66,7 @@ class VelocityTrip {
 
   /// Starts from this reading.
   void start(const DeviceSample& sample) noexcept {
-    from_mm_ = sample.position_mm;
+    reference_mm_ = sample.position_mm;
     sequence_ = sample.sequence;
     ticks_ = 0.0;
   }
@@ -76,7 +76,7 @@ class VelocityTrip {
   [[nodiscard]] bool is_exceeded(const DeviceSample& sample, double ticks) noexcept {
     ticks_ += ticks;
     const double time = std::max(ticks_, window_ticks_);
-    const Vec3 change_mm = sample.position_mm - from_mm_;
+    const Vec3 change_mm = sample.position_mm - reference_mm_;
     const bool exceeded = !(dot(sample.velocity_mm_s, sample.velocity_mm_s) <= speed_squared_) ||
                           !(dot(change_mm, change_mm) <= change_squared_ * (time * time));
     const bool is_new = sample.sequence != sequence_;
@@ -89,13 +89,13 @@ class VelocityTrip {
   double speed_squared_;   ///< mm^2/s^2
   double change_squared_;  ///< in one tick, mm^2
   double window_ticks_;
-  Vec3 from_mm_;
+  Vec3 reference_mm_;
   double ticks_ = 0.0;  ///< since the reading at from_mm_
   std::uint64_t sequence_ = 0;
 };
 
-/// Detects missing new readings. A device slower than the servo repeats its sequence number between
-/// readings; that is a fault only after stale_s.
+/// Detects a lack of new readings. A device slower than the servo repeats its sequence number
+/// between readings; that is a fault only after stale_s.
 class Freshness {
  public:
   /// \param stale_s  > 0; infinity: never
@@ -106,30 +106,30 @@ class Freshness {
 
   void start(std::uint64_t sequence) noexcept {
     sequence_ = sequence;
-    old_ticks_ = 0.0;
+    ticks_without_reading_ = 0.0;
   }
 
-  /// \param ticks  since the last call, >= 1. After a pause the first reading may be old, because
-  ///   the device's thread may have paused as well: one call counts for half of stale_s at most.
+  /// \param ticks  since the last call, >= 1. After a pause of the process the first reading may be
+  ///   old, so one call counts for half of stale_s at most.
   [[nodiscard]] bool is_stale(std::uint64_t sequence, double ticks) noexcept {
     if (sequence != sequence_) {
       start(sequence);
       return false;
     }
-    old_ticks_ += std::min(ticks, max_step_);
-    return old_ticks_ >= stale_ticks_;
+    ticks_without_reading_ += std::min(ticks, max_step_);
+    return ticks_without_reading_ >= stale_ticks_;
   }
 
  private:
   double stale_ticks_;
   double max_step_;
-  double old_ticks_ = 0.0;
+  double ticks_without_reading_ = 0.0;
   std::uint64_t sequence_ = 0;
 };
 
-/// Detects encoders that stop while the device runs: new readings with exactly the same position. A
-/// pressing hand always trembles by more than an encoder step. It counts calls, not time, because
-/// missed ticks had no reading.
+/// Detects encoders that stop while the device runs: new readings at exactly the same position. A
+/// pressing hand always trembles by more than an encoder step. Counts calls instead of time,
+/// because missed ticks had no reading.
 class FrozenEncoders {
  public:
   /// Under less force the hand may have let go of the handle.
@@ -162,17 +162,17 @@ class FrozenEncoders {
   Vec3 position_mm_;
 };
 
-/// Ramps forces up after engaging, by a factor that rises linearly from 0 to 1. It counts calls,
-/// not time, because the hand did not feel missed ticks.
+/// Ramps forces up after engaging, by a factor that rises linearly from 0 to 1. Counts calls
+/// instead of time, because the hand did not feel missed ticks.
 class RampUp {
  public:
   /// \param ramp_s  >= 0, finite; 0: none
   /// \param tick_s  of the servo, > 0
   RampUp(double ramp_s, double tick_s) noexcept
       : share_per_tick_(ramp_s > tick_s ? tick_s / ramp_s : 1.0),
-        first_(ramp_s > 0.0 ? 0.0 : 1.0) {}
+        first_share_(ramp_s > 0.0 ? 0.0 : 1.0) {}
 
-  void start() noexcept { share_ = first_; }
+  void start() noexcept { share_ = first_share_; }
 
   /// \return this tick's share of the force, in [0, 1]
   [[nodiscard]] double next_share() noexcept {
@@ -184,20 +184,20 @@ class RampUp {
 
  private:
   double share_per_tick_;
-  double first_;
+  double first_share_;
   double share_ = 1.0;
 };
 
 /// \param force_n  a force whose square is finite
 /// \param limit_n  > 0, finite
-/// \return the force, shortened to the limit in the same direction (to rounding)
-[[nodiscard]] inline Vec3 within_norm(Vec3 force_n, double limit_n) noexcept {
+/// \return the force, scaled down to the limit if it exceeds it
+[[nodiscard]] inline Vec3 limit_norm(Vec3 force_n, double limit_n) noexcept {
   const double squared_n2 = dot(force_n, force_n);
   if (squared_n2 <= limit_n * limit_n) return force_n;
   return (limit_n / std::sqrt(squared_n2)) * force_n;
 }
 
-/// Follows the given forces by at most one step per call. The step after a pause is not larger,
+/// Approaches the given force by at most one step per call. The step after a pause is not larger,
 /// because the hand feels the step, not the pause.
 class SlewLimit {
  public:
@@ -205,15 +205,15 @@ class SlewLimit {
   /// \param tick_s  of the servo, > 0
   SlewLimit(double max_slew_n_per_s, double tick_s) noexcept : step_n_(max_slew_n_per_s * tick_s) {}
 
-  [[nodiscard]] Vec3 towards(Vec3 force_n) noexcept {
+  [[nodiscard]] Vec3 step_towards(Vec3 force_n) noexcept {
     const Vec3 change_n = force_n - sent_n_;
-    const Vec3 step_n = within_norm(change_n, step_n_);
+    const Vec3 step_n = limit_norm(change_n, step_n_);
     // A force within one step is used directly, because adding differences would round.
     sent_n_ = step_n == change_n ? force_n : sent_n_ + step_n;
     return sent_n_;
   }
 
-  /// The same if one step suffices; else no effect.
+  /// Acts as `step_towards` if one step suffices; otherwise has no effect.
   /// \return whether it sufficed
   [[nodiscard]] bool try_reach(Vec3 force_n) noexcept {
     const Vec3 change_n = force_n - sent_n_;

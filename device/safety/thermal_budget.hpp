@@ -1,5 +1,5 @@
-/// \file How long motors may exceed their continuous force. The safety chain has one budget for the
-/// force's norm; a driver may have one for each motor. Source: docs/safety.md.
+/// \file Limits how long motors may exceed their continuous force. The safety chain has one budget
+/// for the force's norm; a driver may have one for each motor. Source: docs/safety.md.
 ///
 /// A budget belongs to one thread; nothing here allocates, locks or throws.
 #pragma once
@@ -13,19 +13,19 @@
 namespace touchtrial::device {
 
 /// Limits the force by the motors' heat, which is modelled as the exponentially weighted mean of
-/// the squared force. The heat of the continuous force is the maximum. Below the share kWarm of it
-/// the peak force is allowed; above, the limit falls linearly to the continuous force, so that the
-/// maximum is never exceeded. The time constant follows from the time in which peak force warms a
-/// cold motor to kWarm. It has not been measured on real motors.
+/// the squared force. The maximum heat is the square of the continuous force. Below the share kWarm
+/// of it the peak force is allowed; above, the limit falls linearly to the continuous force, so
+/// that the maximum is never exceeded. The time constant is derived from the time in which the peak
+/// force warms a cold motor to kWarm; it has not been measured on real motors.
 ///
 /// "Force" is any quantity proportional to the motors' current: newtons, or a motor command.
 class ThermalBudget {
  public:
   static constexpr double kWarm = 0.9;
 
-  /// \param peak,continuous  in the unit of the force, finite; no budget if the continuous force is
-  ///   not > 0 or not below the peak force
-  /// \param peak_s  at peak force, from cold, before the limit falls, > 0
+  /// \param peak,continuous  in the unit of the force, finite; no budget unless
+  ///   0 < continuous < peak
+  /// \param peak_s  how long a cold motor may exert the peak force before the limit falls, > 0
   /// \param tick_s  the unit of time of `heat`, > 0
   ThermalBudget(double peak, double continuous, double peak_s, double tick_s) noexcept
       : peak_(peak), continuous_(continuous) {
@@ -36,20 +36,20 @@ class ThermalBudget {
     tau_s_ = -peak_s / std::log1p(-warm_share);
     share_per_tick_ = -std::expm1(-tick_s / tau_s_);
   }
-  /// \param limits  sound; no budget if the continuous force is 0 or not below the peak force
+  /// \param limits  valid; no budget if the continuous force is 0 or not below the peak force
   /// \param tick_s  of the servo, > 0
   ThermalBudget(const SafetyLimits& limits, double tick_s) noexcept
       : ThermalBudget(limits.max_force_n, limits.continuous_force_n, limits.thermal_budget_s,
                       tick_s) {}
 
-  /// \param carried_n  force of the motors in addition to the limited one, >= 0
-  /// \return the limit of the force's norm for this tick: from the peak down to the continuous
-  ///   force minus the carried one
-  [[nodiscard]] double limit_n(double carried_n = 0.0) const noexcept {
+  /// \param support_n  force that the motors exert in addition to the limited one, >= 0
+  /// \return the limit of the force's norm for this tick: from the peak force down to the continuous
+  ///   force minus the support
+  [[nodiscard]] double limit_n(double support_n = 0.0) const noexcept {
     if (heat_ <= kWarm * max_heat_) return peak_;
-    const double cold = std::max(0.0, 1.0 - heat_ / max_heat_) / (1.0 - kWarm);
-    const double held_n = std::max(0.0, continuous_ - carried_n);
-    return held_n + std::min(cold, 1.0) * (peak_ - held_n);
+    const double cold_share = std::max(0.0, 1.0 - heat_ / max_heat_) / (1.0 - kWarm);
+    const double sustained_n = std::max(0.0, continuous_ - support_n);
+    return sustained_n + std::min(cold_share, 1.0) * (peak_ - sustained_n);
   }
 
   /// Warms the motors by a force.
@@ -63,7 +63,7 @@ class ThermalBudget {
   ///   same motors; 0 without a budget
   [[nodiscard]] double heat_n2() const noexcept { return heat_; }
   /// Starts with motors that are warm from earlier runs.
-  /// \param heat_n2  when that work ended; a value that is negative or not finite is ignored
+  /// \param heat_n2  when the last run ended; a value that is negative or not finite is ignored
   /// \param rest_s  without force since then, >= 0
   void begin_warm(double heat_n2, double rest_s) noexcept {
     if (share_per_tick_ == 0.0 || !(heat_n2 >= 0.0) || !std::isfinite(heat_n2)) return;

@@ -40,47 +40,48 @@ Watchdog::Watchdog(HapticDevice& device, ServoControl& control,
 }
 
 Watchdog::~Watchdog() {
-  ends_.store(true, std::memory_order_release);
+  stop_requested_.store(true, std::memory_order_release);
   thread_.join();
 }
 
 void Watchdog::arm() {
   const std::lock_guard lock(mutex_);
-  armed_ = true;
-  tripped_ = false;
-  beating_ = false;
+  is_armed_ = true;
+  has_tripped_ = false;
+  is_beating_ = false;
   last_beat_ = heartbeat_.load(std::memory_order_acquire);
-  silent_ = {};
+  elapsed_silence_ = {};
 }
 
 bool Watchdog::disarm() {
   const std::lock_guard lock(mutex_);
-  armed_ = false;
-  return tripped_;
+  is_armed_ = false;
+  return has_tripped_;
 }
 
 void Watchdog::watch() noexcept {
-  // Without permission it runs as an ordinary thread.
+  // If refused, it runs as an ordinary thread.
   static_cast<void>(request_scheduling(
       {.policy = SchedulingPolicy::fifo, .priority = kPriority, .lock_memory = false}));
   WatchdogTime::Time last = time_.now();
-  while (!ends_.load(std::memory_order_acquire)) {
+  while (!stop_requested_.load(std::memory_order_acquire)) {
     time_.pause(pause_);
     const WatchdogTime::Time now = time_.now();
-    look(now - last);
+    check_heartbeat(now - last);
     last = now;
   }
 }
 
-void Watchdog::look(WatchdogTime::Time passed) noexcept {
+void Watchdog::check_heartbeat(WatchdogTime::Time elapsed) noexcept {
   const std::lock_guard lock(mutex_);
   const std::int64_t beat = heartbeat_.load(std::memory_order_acquire);
   const bool is_new = beat != last_beat_;
   last_beat_ = beat;
-  beating_ = (beating_ || is_new) && beat != kServoAtRest;
-  silent_ = is_new || !beating_ ? WatchdogTime::Time{} : silent_ + std::min(passed, 2 * pause_);
-  if (!armed_ || tripped_ || silent_ < silence_) return;
-  tripped_ = true;
+  is_beating_ = (is_beating_ || is_new) && beat != kServoAtRest;
+  elapsed_silence_ = is_new || !is_beating_ ? WatchdogTime::Time{}
+                                            : elapsed_silence_ + std::min(elapsed, 2 * pause_);
+  if (!is_armed_ || has_tripped_ || elapsed_silence_ < silence_) return;
+  has_tripped_ = true;
   device_.halt();
   control_.stall();
 }

@@ -7,7 +7,7 @@
 namespace touchtrial::device {
 namespace {
 
-/// Bins of one octave, and the width of the first ones: below it every nanosecond has its own bin.
+/// The number of bins per octave. Below this many ns, every nanosecond has its own bin.
 constexpr std::int64_t kSteps = 32;
 constexpr int kStepBits = 5;
 

@@ -20,7 +20,7 @@ constexpr std::string_view kHeader =
     "sent_x_n,sent_y_n,sent_z_n,verdict,fault,device_fault,lateness_us,sequence,buttons,ready,"
     "delivered_x_n,delivered_y_n,delivered_z_n\r\n";
 
-std::size_t room_for(double seconds, double rate_hz) {
+std::size_t ring_size_for(double seconds, double rate_hz) {
   const double ticks = std::ceil(seconds * rate_hz);
   if (!(seconds > 0.0 && rate_hz > 0.0 && ticks <= kMaxTicks)) {
     throw std::invalid_argument("FlightRecorder: duration or rate is out of range");
@@ -40,9 +40,9 @@ class Row {
     add(std::string_view(digits.data(), end));
   }
   void add(std::string_view word) {
-    if (!first_) text_ += ',';
+    if (!is_first_) text_ += ',';
     text_ += word;
-    first_ = false;
+    is_first_ = false;
   }
   void add(Vec3 v) {
     add(v.x);
@@ -57,7 +57,7 @@ class Row {
 
  private:
   std::string& text_;
-  bool first_ = true;
+  bool is_first_ = true;
 };
 
 void add_row(std::string& text, const FlightTick& tick) {
@@ -82,7 +82,7 @@ void add_row(std::string& text, const FlightTick& tick) {
 }  // namespace
 
 FlightRecorder::FlightRecorder(double seconds, double rate_hz)
-    : ring_(room_for(seconds, rate_hz)) {}
+    : ring_(ring_size_for(seconds, rate_hz)) {}
 
 void FlightRecorder::record(const FlightTick& tick) noexcept {
   ring_[recorded_ % ring_.size()] = tick;
@@ -90,10 +90,10 @@ void FlightRecorder::record(const FlightTick& tick) noexcept {
 }
 
 std::vector<FlightTick> FlightRecorder::ticks() const {
-  const std::size_t held = std::min(recorded_, ring_.size());
+  const std::size_t recorded = std::min(recorded_, ring_.size());
   std::vector<FlightTick> ticks;
-  ticks.reserve(held);
-  for (std::size_t i = recorded_ - held; i < recorded_; ++i) {
+  ticks.reserve(recorded);
+  for (std::size_t i = recorded_ - recorded; i < recorded_; ++i) {
     ticks.push_back(ring_[i % ring_.size()]);
   }
   return ticks;

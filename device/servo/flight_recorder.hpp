@@ -13,8 +13,8 @@
 
 namespace touchtrial::device {
 
-/// The data of one tick. Forces on a texture identify it, so in a blind session this is as secret
-/// as the trace.
+/// The data of one tick. Forces on a texture identify the texture, so in a blind session these data
+/// are as secret as the trace.
 struct FlightTick {
   std::int64_t tick = 0;            ///< as ServoSample::tick
   std::chrono::nanoseconds time{};  ///< since the first tick, when this one began
@@ -33,12 +33,12 @@ class FlightRecorder {
  public:
   /// \param seconds  > 0
   /// \param rate_hz  > 0
-  /// \throws std::invalid_argument if one is not, or if their product is beyond 10^7 ticks
+  /// \throws std::invalid_argument if one is not > 0, or if their product exceeds 10^7 ticks
   FlightRecorder(double seconds, double rate_hz);
 
   void record(const FlightTick& tick) noexcept;
 
-  /// \return the ticks that it holds, oldest first
+  /// \return the recorded ticks, oldest first
   [[nodiscard]] std::vector<FlightTick> ticks() const;
   /// Discards all ticks, before the next trial.
   void clear() noexcept { recorded_ = 0; }

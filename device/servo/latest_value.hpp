@@ -18,14 +18,14 @@ class LatestValue {
  public:
   explicit LatestValue(const T& first = {}) : slots_{first, first, first} {}
 
-  /// Writer's thread.
+  /// Call it on the writer's thread.
   void set(const T& value) noexcept {
     slots_[back_] = value;
     back_ = shared_.exchange(back_ | kFresh, std::memory_order_acq_rel) & kIndex;
   }
 
-  /// Reader's thread.
-  /// \return the newest value; the same one again if there is no newer one
+  /// Call it on the reader's thread.
+  /// \return the newest value; the previous one again if there is none newer
   [[nodiscard]] const T& get() noexcept {
     if ((shared_.load(std::memory_order_relaxed) & kFresh) != 0) {
       front_ = shared_.exchange(front_, std::memory_order_acq_rel) & kIndex;

@@ -1,5 +1,5 @@
-/// \file The virtual plane's placement in a device's workspace, and an adapter of the device to the
-///   plane frame.
+/// \file The virtual plane's placement in a device's workspace, and an adapter that converts a
+///   device to the plane frame.
 #pragma once
 
 #include "device/haptic_device.hpp"
@@ -33,7 +33,7 @@ struct PlanePlacement {
 ///@}
 
 /// Adapts a device to the plane frame, which the servo uses. Lengths and magnitudes of forces are
-/// unchanged. Threads as HapticDevice.
+/// unchanged. Thread rules as for HapticDevice.
 class PlacedDevice final : public HapticDevice {
  public:
   /// \param device  must outlive this
@@ -55,11 +55,11 @@ class PlacedDevice final : public HapticDevice {
     return device_.write(to_device_direction(force_n, placement_.orientation));
   }
   [[nodiscard]] Vec3 support_force_n(const DeviceSample& sample) noexcept override {
-    DeviceSample own = sample;
-    own.position_mm =
+    DeviceSample device_sample = sample;
+    device_sample.position_mm =
         placement_.origin_mm + to_device_direction(sample.position_mm, placement_.orientation);
-    own.velocity_mm_s = to_device_direction(sample.velocity_mm_s, placement_.orientation);
-    return to_plane_direction(device_.support_force_n(own), placement_.orientation);
+    device_sample.velocity_mm_s = to_device_direction(sample.velocity_mm_s, placement_.orientation);
+    return to_plane_direction(device_.support_force_n(device_sample), placement_.orientation);
   }
   void halt() noexcept override { device_.halt(); }
   void rearm() noexcept override { device_.rearm(); }

@@ -8,7 +8,7 @@
 namespace touchtrial::device {
 
 struct SampleRing::Queue {
-  explicit Queue(std::size_t room) : capacity(room), samples(room) {}
+  explicit Queue(std::size_t queue_capacity) : capacity(queue_capacity), samples(queue_capacity) {}
 
   std::size_t capacity;
   boost::lockfree::spsc_queue<ServoSample> samples;
@@ -20,8 +20,8 @@ SampleRing::SampleRing(std::size_t capacity) {
   // Prefaults every page, so that the loop has no page faults.
   while (push({})) {
   }
-  std::array<ServoSample, 256> read;
-  while (pop(read) != 0) {
+  std::array<ServoSample, 256> batch;
+  while (pop(batch) != 0) {
   }
 }
 
@@ -35,11 +35,11 @@ bool SampleRing::push(const ServoSample& sample) noexcept {
   return queue_->samples.push(sample);
 }
 
-std::size_t SampleRing::pop(std::span<ServoSample> into) noexcept {
-  return queue_->samples.pop(into.data(), into.size());
+std::size_t SampleRing::pop(std::span<ServoSample> target) noexcept {
+  return queue_->samples.pop(target.data(), target.size());
 }
 
-std::size_t SampleRing::waiting() const noexcept {
+std::size_t SampleRing::size() const noexcept {
   return queue_->samples.read_available();
 }
 

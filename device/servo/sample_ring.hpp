@@ -24,16 +24,16 @@ class SampleRing {
 
   [[nodiscard]] std::size_t capacity() const noexcept;
 
-  /// Servo thread.
+  /// Call it on the servo thread.
   /// \return false if the ring is full: the sample is lost
   [[nodiscard]] bool push(const ServoSample& sample) noexcept;
 
   /// \name Reader's thread
-  /// @{ Moves the oldest samples to the front of `into`.
-  /// \return how many
-  [[nodiscard]] std::size_t pop(std::span<ServoSample> into) noexcept;
-  /// \return the number of waiting samples, a lower bound for the reader
-  [[nodiscard]] std::size_t waiting() const noexcept;
+  /// @{ Moves the oldest samples to the front of `target`.
+  /// \return the number of moved samples
+  [[nodiscard]] std::size_t pop(std::span<ServoSample> target) noexcept;
+  /// \return the number of unread samples, a lower bound for the reader
+  [[nodiscard]] std::size_t size() const noexcept;
   ///@}
 
  private:

@@ -7,10 +7,10 @@
 namespace touchtrial::device {
 namespace {
 
-constexpr Vec3 times(Vec3 a, Vec3 b) noexcept {
+constexpr Vec3 axis_product(Vec3 a, Vec3 b) noexcept {
   return {a.x * b.x, a.y * b.y, a.z * b.z};
 }
-constexpr Vec3 over(Vec3 a, Vec3 b) noexcept {
+constexpr Vec3 axis_quotient(Vec3 a, Vec3 b) noexcept {
   return {a.x / b.x, a.y / b.y, a.z / b.z};
 }
 
@@ -25,18 +25,19 @@ std::string scale_text(const DeviceScale& scale) {
 }
 
 Workspace scaled(const Workspace& workspace, Vec3 length) noexcept {
-  return {times(workspace.min_mm, length), times(workspace.max_mm, length), workspace.shape};
+  return {axis_product(workspace.min_mm, length), axis_product(workspace.max_mm, length),
+          workspace.shape};
 }
 
 DeviceInfo scaled(DeviceInfo info, const DeviceScale& scale) {
-  const double weakest = std::min({scale.force.x, scale.force.y, scale.force.z});
+  const double min_force_scale = std::min({scale.force.x, scale.force.y, scale.force.z});
   const double max_length = std::max({scale.length.x, scale.length.y, scale.length.z});
-  const double of_force = std::min(1.0, weakest);
-  const double of_stiffness = std::min(1.0, weakest / max_length);
-  info.max_force_n *= of_force;
-  info.continuous_force_n *= of_force;
-  info.max_stiffness_n_per_mm *= of_stiffness;
-  info.max_damping_n_s_per_mm *= of_stiffness;
+  const double force_factor = std::min(1.0, min_force_scale);
+  const double stiffness_factor = std::min(1.0, min_force_scale / max_length);
+  info.max_force_n *= force_factor;
+  info.continuous_force_n *= force_factor;
+  info.max_stiffness_n_per_mm *= stiffness_factor;
+  info.max_damping_n_s_per_mm *= stiffness_factor;
   if (info.workspace) info.workspace = scaled(*info.workspace, scale.length);
   info.scale = scale;
   return info;
@@ -44,21 +45,21 @@ DeviceInfo scaled(DeviceInfo info, const DeviceScale& scale) {
 
 DeviceStatus ScaledDevice::read(DeviceSample& sample) noexcept {
   const DeviceStatus status = device_->read(sample);
-  sample.position_mm = times(sample.position_mm, scale_.length);
-  sample.velocity_mm_s = times(sample.velocity_mm_s, scale_.length);
-  if (sample.delivered_n) sample.delivered_n = times(*sample.delivered_n, scale_.force);
+  sample.position_mm = axis_product(sample.position_mm, scale_.length);
+  sample.velocity_mm_s = axis_product(sample.velocity_mm_s, scale_.length);
+  if (sample.delivered_n) sample.delivered_n = axis_product(*sample.delivered_n, scale_.force);
   return status;
 }
 
 DeviceStatus ScaledDevice::write(Vec3 force_n) noexcept {
-  return device_->write(over(force_n, scale_.force));
+  return device_->write(axis_quotient(force_n, scale_.force));
 }
 
 Vec3 ScaledDevice::support_force_n(const DeviceSample& sample) noexcept {
-  DeviceSample own = sample;
-  own.position_mm = over(sample.position_mm, scale_.length);
-  own.velocity_mm_s = over(sample.velocity_mm_s, scale_.length);
-  return device_->support_force_n(own);
+  DeviceSample driver_sample = sample;
+  driver_sample.position_mm = axis_quotient(sample.position_mm, scale_.length);
+  driver_sample.velocity_mm_s = axis_quotient(sample.velocity_mm_s, scale_.length);
+  return device_->support_force_n(driver_sample);
 }
 
 }  // namespace touchtrial::device

@@ -1,5 +1,5 @@
-/// \file Corrects a device whose newtons or millimetres differ from its driver's, as measured by a
-///   lab. Source: docs/devices/README.md, "Force and length".
+/// \file Corrects a driver's newtons and millimetres by scales that a lab has measured. Source:
+///   docs/devices/README.md, "Force and length".
 #pragma once
 
 #include "device/haptic_device.hpp"
@@ -16,23 +16,23 @@ inline constexpr double kMinScale = 0.2;
 inline constexpr double kMaxScale = 5.0;
 ///@}
 
-/// The workspace in true millimetres.
-/// \param length  of DeviceScale
+/// \return the workspace in true millimetres
+/// \param length  DeviceScale::length
 [[nodiscard]] Workspace scaled(const Workspace& workspace, Vec3 length) noexcept;
 
 /// \param info  in the driver's newtons and millimetres
-/// \return the same in true ones. Limits of force, stiffness and damping apply in both the driver's
-///   newtons and true ones, whichever is stricter, in every direction.
+/// \return the same in true newtons and millimetres. Limits of force, stiffness and damping hold in
+///   every direction, both in the driver's units and in true units.
 [[nodiscard]] DeviceInfo scaled(DeviceInfo info, const DeviceScale& scale);
 
 /// \return "force_scale 1, 1.02, 1 and length_scale 1, 1, 1"
 [[nodiscard]] std::string scale_text(const DeviceScale& scale);
 
 /// Corrects a driver's readings and forces, so that everything above it, including the safety
-/// chain's limits, uses true newtons and millimetres. Threads as HapticDevice.
+/// chain's limits, uses true newtons and millimetres. Thread rules as for HapticDevice.
 class ScaledDevice final : public HapticDevice {
  public:
-  /// \param scale  every number within kMinScale and kMaxScale
+  /// \param scale  every number in [kMinScale, kMaxScale]
   ScaledDevice(std::unique_ptr<HapticDevice> device, const DeviceScale& scale) noexcept
       : device_(std::move(device)), scale_(scale) {}
 

@@ -1,4 +1,4 @@
-/// \file The servo loop: read, force, safety, write, record, a thousand times a second or more.
+/// \file The servo loop, which runs at 1 kHz or faster: read, compute the force, check, write, record.
 #pragma once
 
 #include "device/haptic_device.hpp"
@@ -26,7 +26,8 @@ class ForceSource {
   virtual ~ForceSource() = default;
   /// \return the force on the hand in this state, N, in the plane frame
   [[nodiscard]] virtual Vec3 force_n(const DeviceSample& sample) noexcept = 0;
-  /// Called after each force: whether the run is to end, with a fade, as if the hand were done.
+  /// Called after each force.
+  /// \return whether the run should end with a fade, as if the hand were done
   [[nodiscard]] virtual bool is_done() const noexcept { return false; }
 };
 
@@ -37,8 +38,7 @@ struct ServoSample {
   std::int64_t tick = 0;  ///< time since plane-on in ticks; overruns skip numbers
 };
 
-/// Receives the samples. Called on the servo thread, so it reserves room for all of them in
-/// advance.
+/// Receives the samples. Called on the servo thread, so it must not allocate.
 class SampleSink {
  public:
   virtual ~SampleSink() = default;
@@ -63,8 +63,8 @@ enum class ServoEnd {
   fault,         ///< see SafetyFault
 };
 
-/// The lateness of ticks, from a DurationHistogram. A tick after missed ones counts from the first
-/// of those, so the worst shows how long the loop stalled.
+/// The lateness of ticks, from a DurationHistogram. After missed ticks it is measured from the
+/// first missed one, so the worst lateness shows how long the loop stalled.
 struct Lateness {
   double p50_us = 0.0;
   double p99_us = 0.0;
@@ -77,12 +77,12 @@ struct ServoReport {
   SafetyFault fault = SafetyFault::none;
   DeviceFault device_fault = DeviceFault::none;
   std::int64_t ticks = 0;          ///< recorded samples
-  std::int64_t limited_ticks = 0;  ///< changed by the safety chain, or by the device's own limits
+  std::int64_t limited_ticks = 0;  ///< limited by the safety chain, or by the device itself
   std::int64_t contact_ticks = 0;  ///< with a force out of the plane
   std::int64_t overruns = 0;       ///< ticks missed because the loop stalled
   double force_limit_n = 0.0;  ///< the applied limit: the smaller of the options' and the device's
-  /// Measured from the first tick to the last; 0 with fewer than two ticks. In virtual time, that
-  /// of the options.
+  /// Measured from the first tick to the last; 0 with fewer than two ticks. In virtual time,
+  /// ServoOptions::rate_hz.
   double rate_hz = 0.0;
   Lateness lateness;  ///< zeros in virtual time
   /// The share of the commanded force that the device reports (DeviceSample::delivered_n): the
@@ -102,40 +102,39 @@ struct ServoState {
 class DurationHistogram;
 class FlightRecorder;
 
-/// The motors' heat of one device, carried from run to run.
+/// The heat of a device's motors, passed from run to run.
 struct MotorHeat {
-  double heat_n2 = 0.0;     ///< ThermalBudget::heat_n2 when the last run ended
-  ServoClock::Time when{};  ///< that moment, on the clock of the runs
+  double heat_n2 = 0.0;     ///< ThermalBudget::heat_n2 at that time
+  ServoClock::Time when{};  ///< when the last run ended, by the clock of the runs
 };
 
 /// Parameters that other threads may change while the servo runs.
 struct ServoParameters {
-  /// Factor of every force, in [0, 1]; a value outside counts as the nearer end, NaN as 0. The
-  /// servo follows it within 100 ms, without a step.
+  /// Factor of every force, clamped to [0, 1]; NaN counts as 0. The servo follows a change within
+  /// 100 ms, without a step.
   double force_share = 1.0;
 };
 
-/// The heartbeat outside of a run.
+/// The value of ServoHooks::heartbeat between runs.
 inline constexpr std::int64_t kServoAtRest = -1;
 
-/// Objects of other threads that observe or control the loop; null: none.
+/// Objects through which other threads observe or control the loop; null: none.
 struct ServoHooks {
   ServoControl* control = nullptr;
   LatestValue<ServoState>* state = nullptr;  ///< set every tick, for one reader
   /// Counts ticks, for a Watchdog; kServoAtRest once the run has ended.
   std::atomic<std::int64_t>* heartbeat = nullptr;
-  FlightRecorder* recorder = nullptr;     ///< records every tick, including that of a fault
-  DurationHistogram* lateness = nullptr;  ///< this run's ticks are added to it at the end
+  FlightRecorder* recorder = nullptr;     ///< records every tick, including the tick of a fault
+  DurationHistogram* lateness = nullptr;  ///< the lateness of the run's ticks is added at the end
   MotorHeat* heat = nullptr;              ///< read at the beginning, written at the end
   /// Read atomically at every tick; one writer.
   LatestValue<ServoParameters>* parameters = nullptr;
 };
 
-/// Runs the loop until it ends. Tick i is due i / rate_hz after the first. A loop that is late by a
-/// tick or more skips the missed ticks, so that they never come in a burst. Every force goes
-/// through the safety chain; the last one written is zero, and after a fault the device is halted.
-/// No allocation, lock or exception inside the loop. Blocks: the calling thread becomes the
-/// servo's.
+/// Runs the loop until it ends; the calling thread becomes the servo thread. Tick i is due
+/// i / rate_hz after the first. A loop that is late by a tick or more skips the missed ticks
+/// instead of running them in a burst. Every force passes the safety chain; the last one written is
+/// zero, and after a fault the device is halted. No allocation, lock or exception inside the loop.
 /// \throws std::invalid_argument before the first tick if an option is out of its range
 [[nodiscard]] ServoReport run_servo(HapticDevice& device, ForceSource& force, SampleSink& sink,
                                     const ServoOptions& options, ServoClock& clock,
@@ -149,7 +148,8 @@ struct ServoHooks {
 /// \name Names of the servo's states in files and reports: lower case, with underscores
 ///@{
 [[nodiscard]] std::string_view name_of(ServoEnd end) noexcept;
-/// The names of a report's faults: "device (link_lost)", or "none".
+/// \return the names of the report's faults, for instance "device (link_lost)"; "none" without
+///   a fault
 [[nodiscard]] std::string fault_names(const ServoReport& report);
 [[nodiscard]] std::string_view name_of(SafetyVerdict verdict) noexcept;
 [[nodiscard]] std::string_view name_of(SafetyFault fault) noexcept;

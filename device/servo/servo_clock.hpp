@@ -14,7 +14,7 @@ class ServoClock {
   virtual ~ServoClock() = default;
 
   [[nodiscard]] virtual Time now() noexcept = 0;
-  /// Returns at or after this time; at once if it is over.
+  /// Returns at or after this time; at once if it has passed.
   virtual void wait_until(Time time) noexcept = 0;
 };
 
@@ -34,8 +34,8 @@ class VirtualClock final : public ServoClock {
 /// deadline and spins for the rest.
 class PacedClock final : public ServoClock {
  public:
-  /// \return the spin that suits a thread's policy: a real-time thread can spin longer than most
-  ///   late wake-ups, while an ordinary thread that spins for long is preempted
+  /// \return the spin that suits a thread's policy. A real-time thread can spin long enough to
+  ///   absorb most late wake-ups; an ordinary thread that spins for long is preempted
   [[nodiscard]] static Time default_spin(SchedulingPolicy policy) noexcept {
     return std::chrono::microseconds(policy == SchedulingPolicy::fifo ? 150 : 50);
   }

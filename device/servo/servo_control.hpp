@@ -11,13 +11,13 @@ namespace touchtrial::device {
 class ServoControl {
  public:
   /// The person is done: the force fades as at the time limit; the run ends as hand_stopped.
-  void finish() noexcept { ask(kFinish); }
-  /// The force goes to zero within 100 ms, without a step; the run ends as comfort_stop.
-  void comfort_stop() noexcept { ask(kComfortStop); }
+  void finish() noexcept { set(kFinish); }
+  /// The force falls to zero within 100 ms, without a step; the run ends as comfort_stop.
+  void comfort_stop() noexcept { set(kComfortStop); }
   /// Zero force from the next tick on; the run ends with a fault.
-  void emergency_stop() noexcept { ask(kEmergencyStop); }
+  void emergency_stop() noexcept { set(kEmergencyStop); }
   /// The servo stopped ticking (Watchdog): like an emergency stop, but the run ends as stalled.
-  void stall() noexcept { ask(kStall); }
+  void stall() noexcept { set(kStall); }
   /// Call before a new run: clears all requests. Only this cancels an emergency stop or a stall.
   void reset() noexcept { requests_.store(0, std::memory_order_release); }
   /// Call before a new run: clears all requests except an emergency stop and a stall, so that one
@@ -26,10 +26,10 @@ class ServoControl {
     requests_.fetch_and(kEmergencyStop | kStall, std::memory_order_acq_rel);
   }
 
-  [[nodiscard]] bool finish_asked() const noexcept { return is_asked(kFinish); }
-  [[nodiscard]] bool comfort_stop_asked() const noexcept { return is_asked(kComfortStop); }
-  [[nodiscard]] bool emergency_stop_asked() const noexcept { return is_asked(kEmergencyStop); }
-  [[nodiscard]] bool stall_seen() const noexcept { return is_asked(kStall); }
+  [[nodiscard]] bool finish_requested() const noexcept { return is_set(kFinish); }
+  [[nodiscard]] bool comfort_stop_requested() const noexcept { return is_set(kComfortStop); }
+  [[nodiscard]] bool emergency_stop_requested() const noexcept { return is_set(kEmergencyStop); }
+  [[nodiscard]] bool stall_requested() const noexcept { return is_set(kStall); }
 
  private:
   static constexpr std::uint32_t kFinish = 1;
@@ -38,10 +38,10 @@ class ServoControl {
   static constexpr std::uint32_t kStall = 8;
   static_assert(std::atomic<std::uint32_t>::is_always_lock_free, "signal handlers set it");
 
-  void ask(std::uint32_t request) noexcept {
+  void set(std::uint32_t request) noexcept {
     requests_.fetch_or(request, std::memory_order_acq_rel);
   }
-  [[nodiscard]] bool is_asked(std::uint32_t request) const noexcept {
+  [[nodiscard]] bool is_set(std::uint32_t request) const noexcept {
     return (requests_.load(std::memory_order_acquire) & request) != 0;
   }
 

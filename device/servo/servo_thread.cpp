@@ -11,35 +11,35 @@ namespace touchtrial::device {
 struct ServoThread::State {
   using Work = std::packaged_task<void()>;
 
-  /// The thread's main function: does work until `end`.
+  /// The thread's main function: runs work until `end`.
   void serve(const SchedulingRequest& request, std::promise<SchedulingObtained> scheduled) {
     scheduled.set_value(request_scheduling(request));
-    for (Work work = next(); work.valid(); work = next()) work();
+    for (Work work = take_next(); work.valid(); work = take_next()) work();
   }
 
   /// \return no work when the thread is to end
-  Work next() {
+  Work take_next() {
     std::unique_lock lock(mutex);
-    changed.wait(lock, [this] { return given.valid() || ending; });
-    return std::exchange(given, Work());
+    state_changed.wait(lock, [this] { return pending.valid() || is_ending; });
+    return std::exchange(pending, Work());
   }
 
-  void give(Work work) {
+  void submit(Work work) {
     const std::lock_guard lock(mutex);
-    given = std::move(work);
-    changed.notify_one();
+    pending = std::move(work);
+    state_changed.notify_one();
   }
 
   void end() {
     const std::lock_guard lock(mutex);
-    ending = true;
-    changed.notify_one();
+    is_ending = true;
+    state_changed.notify_one();
   }
 
   std::mutex mutex;
-  std::condition_variable changed;
-  Work given;
-  bool ending = false;
+  std::condition_variable state_changed;
+  Work pending;
+  bool is_ending = false;
   std::future<void> result;
   SchedulingObtained scheduling;
   std::thread thread;
@@ -63,11 +63,11 @@ const SchedulingObtained& ServoThread::scheduling() const noexcept {
 
 void ServoThread::start(std::function<void()> work) {
   if (state_->result.valid()) {
-    throw std::logic_error("ServoThread: nobody has waited for the previous work");
+    throw std::logic_error("ServoThread: call wait() for the previous work first");
   }
   State::Work task(std::move(work));
   state_->result = task.get_future();
-  state_->give(std::move(task));
+  state_->submit(std::move(task));
 }
 
 bool ServoThread::running() const noexcept {
@@ -87,7 +87,7 @@ void ServoThread::run(std::function<void()> work) {
 RunningServo::RunningServo(ServoThread& thread, ServoControl& control, std::function<void()> work)
     : thread_(thread), control_(control) {
   auto promise = std::make_shared<std::promise<void>>();
-  ended_ = promise->get_future();
+  completion_ = promise->get_future();
   thread_.start([work = std::move(work), promise = std::move(promise)] {
     struct EndNotifier {  // also if the work throws
       std::promise<void>& promise;
@@ -99,7 +99,7 @@ RunningServo::RunningServo(ServoThread& thread, ServoControl& control, std::func
 }
 
 RunningServo::~RunningServo() {
-  if (!ended_.valid()) return;
+  if (!completion_.valid()) return;
   control_.emergency_stop();
   try {
     finish();
@@ -107,12 +107,12 @@ RunningServo::~RunningServo() {
   }
 }
 
-bool RunningServo::runs(std::chrono::nanoseconds timeout) const {
-  return ended_.wait_for(timeout) != std::future_status::ready;
+bool RunningServo::is_running(std::chrono::nanoseconds timeout) const {
+  return completion_.wait_for(timeout) != std::future_status::ready;
 }
 
 void RunningServo::finish() {
-  ended_.get();
+  completion_.get();
   thread_.wait();
 }
 

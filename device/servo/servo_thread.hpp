@@ -1,4 +1,4 @@
-/// \file The servo's thread, and a run on it while another thread serves the user.
+/// \file The servo's thread, and a run on it while the calling thread serves the user.
 #pragma once
 
 #include "device/platform/realtime.hpp"
@@ -15,7 +15,7 @@ namespace touchtrial::device {
 /// trial of a session. All functions belong to the thread that created it.
 class ServoThread {
  public:
-  /// Returns once the thread has its scheduling.
+  /// Returns once the thread has requested its scheduling.
   explicit ServoThread(const SchedulingRequest& request = {});
   /// Waits for the work to end. Its exception, if any, is lost.
   ~ServoThread();
@@ -25,12 +25,12 @@ class ServoThread {
   /// The scheduling that the thread obtained, for the record and for PacedClock::default_spin.
   [[nodiscard]] const SchedulingObtained& scheduling() const noexcept;
 
-  /// Runs this on the thread and returns at once.
-  /// \throws std::logic_error if previous work was not waited for
+  /// Starts this work on the thread and returns at once.
+  /// \throws std::logic_error unless `wait` was called for the previous work
   void start(std::function<void()> work);
   /// \return whether work is running. False does not replace `wait`.
   [[nodiscard]] bool running() const noexcept;
-  /// Waits for the work to end and rethrows its exception. Returns at once without work.
+  /// Waits for the work to end and rethrows its exception. Returns at once if there is no work.
   void wait();
   /// `start` and `wait`.
   void run(std::function<void()> work);
@@ -40,30 +40,30 @@ class ServoThread {
   std::unique_ptr<State> state_;
 };
 
-/// One run on a ServoThread, as a scope. However the scope is left, even by an exception, the force
-/// is off and the thread idle before objects of the run are destroyed. Belongs to the thread that
-/// created it.
+/// Scope of one run on a ServoThread. When the scope ends, even by an exception, the force is off
+/// and the thread idle before objects of the run are destroyed. Belongs to the thread that created
+/// it.
 class RunningServo {
  public:
-  /// \param thread,control  must outlive this; the control is that of the run's ServoHooks
+  /// \param thread,control  must outlive this; the control is ServoHooks::control of the run
   /// \param work  calls run_servo
-  /// \throws std::logic_error if the thread is at work
+  /// \throws std::logic_error if the thread is running other work
   RunningServo(ServoThread& thread, ServoControl& control, std::function<void()> work);
   /// Requests an emergency stop and waits for the end, unless `finish` has returned.
   ~RunningServo();
   RunningServo(const RunningServo&) = delete;
   RunningServo& operator=(const RunningServo&) = delete;
 
-  /// \param timeout  timeout
-  /// \return whether it still runs
-  [[nodiscard]] bool runs(std::chrono::nanoseconds timeout = {}) const;
+  /// \param timeout  how long to wait for the end
+  /// \return whether it is still running
+  [[nodiscard]] bool is_running(std::chrono::nanoseconds timeout = {}) const;
   /// Waits for the end and rethrows the work's exception. Call it once.
   void finish();
 
  private:
   ServoThread& thread_;
   ServoControl& control_;
-  std::future<void> ended_;
+  std::future<void> completion_;
 };
 
 }  // namespace touchtrial::device

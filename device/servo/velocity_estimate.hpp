@@ -23,33 +23,33 @@ class VelocityEstimate {
   /// Readings older than this are ignored.
   static constexpr Time kMemory = std::chrono::milliseconds(50);
 
-  /// \param at  not earlier than in the last call
-  /// \return the velocity with this position, mm/s; zero from fewer than two readings
-  [[nodiscard]] Vec3 add(Vec3 position_mm, Time at) noexcept {
-    drop_old(at);
+  /// \param time  not earlier than in the last call
+  /// \return the velocity at this reading, mm/s; zero from fewer than two readings
+  [[nodiscard]] Vec3 add(Vec3 position_mm, Time time) noexcept {
+    drop_old(time);
     if (count_ == kReadings) {
       std::move(readings_.begin() + 1, readings_.end(), readings_.begin());
       --count_;
     }
-    readings_[count_++] = {position_mm, at};
+    readings_[count_++] = {position_mm, time};
     return slope_mm_s();
   }
   /// Resets to the state before the first reading.
-  void forget() noexcept { count_ = 0; }
+  void reset() noexcept { count_ = 0; }
 
  private:
   struct Reading {
     Vec3 position_mm;
-    Time at{};
+    Time time{};
   };
 
   void drop_old(Time now) noexcept {
     const auto end = readings_.begin() + static_cast<std::ptrdiff_t>(count_);
-    const auto kept = std::find_if(readings_.begin(), end, [&](const Reading& reading) {
-      return now - reading.at <= kMemory;
+    const auto first = std::find_if(readings_.begin(), end, [&](const Reading& reading) {
+      return now - reading.time <= kMemory;
     });
-    std::move(kept, end, readings_.begin());
-    count_ = static_cast<std::size_t>(end - kept);
+    std::move(first, end, readings_.begin());
+    count_ = static_cast<std::size_t>(end - first);
   }
   [[nodiscard]] Vec3 slope_mm_s() const noexcept {
     // Times relative to the newest reading, so that they are small and exact.
@@ -58,13 +58,14 @@ class VelocityEstimate {
     Vec3 mean_mm;
     for (std::size_t i = 0; i < count_; ++i) {
       const double share = 1.0 / static_cast<double>(count_);
-      mean_s += share * std::chrono::duration<double>(readings_[i].at - newest.at).count();
+      mean_s += share * std::chrono::duration<double>(readings_[i].time - newest.time).count();
       mean_mm = mean_mm + share * (readings_[i].position_mm - newest.position_mm);
     }
     double spread_s2 = 0.0;
     Vec3 product_mm_s;
     for (std::size_t i = 0; i < count_; ++i) {
-      const double s = std::chrono::duration<double>(readings_[i].at - newest.at).count() - mean_s;
+      const double s =
+          std::chrono::duration<double>(readings_[i].time - newest.time).count() - mean_s;
       spread_s2 += s * s;
       product_mm_s = product_mm_s + s * (readings_[i].position_mm - newest.position_mm - mean_mm);
     }

@@ -18,14 +18,14 @@ std::vector<double> hann(int count) {
 
 }  // namespace
 
-void load_faded(const GreyImage& picture, RealFft<double>& fft) {
+void load_windowed(const GreyImage& picture, RealFft<double>& fft) {
   const double mean = mean_of(picture);
-  const std::vector<double> down = hann(picture.height());
-  const std::vector<double> across = hann(picture.width());
-  double* to = fft.plane().data();
+  const std::vector<double> window_y = hann(picture.height());
+  const std::vector<double> window_x = hann(picture.width());
+  double* sample = fft.plane().data();
   for (int y = 0; y < picture.height(); ++y) {
     for (int x = 0; x < picture.width(); ++x) {
-      *to++ = (picture.at(y, x) - mean) * down[y] * across[x];
+      *sample++ = (picture.at(y, x) - mean) * window_y[y] * window_x[x];
     }
   }
 }

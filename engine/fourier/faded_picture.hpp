@@ -6,9 +6,9 @@
 
 namespace touchtrial::engine {
 
-/// Fills the transform's plane with a picture less its mean, under a Hann window in both
-/// directions, so that opposite edges meet without a step.
+/// Fills the transform's plane with a picture minus its mean, multiplied by a Hann window in both
+/// directions, so that opposite edges match.
 /// \param fft  of the picture's size
-void load_faded(const GreyImage& picture, RealFft<double>& fft);
+void load_windowed(const GreyImage& picture, RealFft<double>& fft);
 
 }  // namespace touchtrial::engine

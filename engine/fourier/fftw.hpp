@@ -52,7 +52,7 @@ struct Fftw<float> {
   static constexpr auto* forget = &fftwf_forget_wisdom;
 };
 
-/// Measured plans would be faster by up to a third, but differ from run to run, and with them the
+/// Measured plans would be up to a third faster, but they differ between runs and would change the
 /// last bits of a texture.
 inline constexpr unsigned kPlannerFlags = FFTW_ESTIMATE;
 
@@ -62,13 +62,13 @@ inline std::mutex& planner_mutex() {
   return mutex;
 }
 
-/// Whether FFTW once lacked memory; its planner state is then inconsistent and must not be used.
-inline std::atomic<bool>& lacked_memory() {
-  static std::atomic<bool> lacked{false};
-  return lacked;
+/// Whether FFTW has run out of memory. Its planner is then inconsistent and must not be used.
+inline std::atomic<bool>& out_of_memory_flag() {
+  static std::atomic<bool> flag{false};
+  return flag;
 }
 
-/// Memory that starts at a cache line, as all plans expect. Its content is undefined at first.
+/// Memory aligned to a cache line, as all plans expect. Uninitialised.
 template <typename Element>
 class FftwBuffer {
  public:
@@ -95,9 +95,9 @@ template <typename Real>
   return reinterpret_cast<typename Fftw<Real>::Complex*>(numbers);
 }
 
-/// A group of plans, for any buffers of FftwBuffer. Plans of up to 4096 samples take longer to make
-/// than to execute, so they are cached: a new sense of touch, for instance, is created for every
-/// exploration.
+/// A group of plans, which can be used with any FftwBuffer. Creating a plan of up to 4096 samples
+/// takes longer than executing it, so these plans are cached: TextureSense, for instance, is
+/// created for each exploration.
 template <typename Real>
 class FftwPlans {
  public:
@@ -105,24 +105,24 @@ class FftwPlans {
   /// Makes all plans with kPlannerFlags; nullptr where FFTW has none.
   using Make = std::function<std::vector<Plan>()>;
 
-  /// \param name  of these plans among all of this precision
-  /// \param samples  that are transformed
-  /// \throws std::bad_alloc if FFTW lacks memory, or did before
+  /// \param name  unique within this precision
+  /// \param samples  number of samples transformed
+  /// \throws std::bad_alloc if FFTW is or was out of memory
   /// \throws std::invalid_argument if FFTW has no such plan
   FftwPlans(const std::string& name, std::size_t samples, const Make& make) {
     const std::lock_guard lock(planner_mutex());
-    const bool keep = samples <= kMaxCachedSamples;
-    if (keep) plans_ = kept()[name];
+    const bool use_cache = samples <= kMaxCachedSamples;
+    if (use_cache) plans_ = cache()[name];
     if (plans_) return;
-    if (lacked_memory()) throw std::bad_alloc();
+    if (out_of_memory_flag()) throw std::bad_alloc();
     plans_ = std::make_shared<Plans>(make());
-    // Otherwise plans would depend on the order in which transforms are created.
+    // If FFTW kept its wisdom, plans would depend on the order in which transforms are created.
     Fftw<Real>::forget();
     if (!plans_->are_complete()) {
       plans_.reset();
       throw std::invalid_argument("no Fourier transform for this size of plane");
     }
-    if (keep) kept()[name] = plans_;
+    if (use_cache) cache()[name] = plans_;
   }
   ~FftwPlans() {
     const std::lock_guard lock(planner_mutex());
@@ -131,35 +131,35 @@ class FftwPlans {
   FftwPlans(const FftwPlans&) = delete;
   FftwPlans& operator=(const FftwPlans&) = delete;
 
-  [[nodiscard]] Plan operator[](std::size_t index) const noexcept { return plans_->all[index]; }
+  [[nodiscard]] Plan operator[](std::size_t index) const noexcept { return plans_->handles[index]; }
 
  private:
   static constexpr std::size_t kMaxCachedSamples = 4096;
 
   struct Plans {
-    explicit Plans(std::vector<Plan> made) : all(std::move(made)) {}
+    explicit Plans(std::vector<Plan> plans) : handles(std::move(plans)) {}
     ~Plans() {
-      for (const Plan plan : all) Fftw<Real>::destroy(plan);
+      for (const Plan plan : handles) Fftw<Real>::destroy(plan);
     }
     Plans(const Plans&) = delete;
     Plans& operator=(const Plans&) = delete;
 
     [[nodiscard]] bool are_complete() const {
-      for (const Plan plan : all) {
+      for (const Plan plan : handles) {
         if (plan == nullptr) return false;
       }
       return true;
     }
 
-    std::vector<Plan> all;
+    std::vector<Plan> handles;
   };
 
-  static std::map<std::string, std::shared_ptr<Plans>>& kept() {
+  static std::map<std::string, std::shared_ptr<Plans>>& cache() {
     static std::map<std::string, std::shared_ptr<Plans>> plans;
     return plans;
   }
 
-  std::shared_ptr<Plans> plans_;  // changed under the planner's mutex
+  std::shared_ptr<Plans> plans_;  // guarded by planner_mutex()
 };
 
 }  // namespace touchtrial::engine

@@ -29,26 +29,26 @@ Real* reals(std::complex<Real>* numbers) {
   return reinterpret_cast<Real*>(numbers);
 }
 
-/// Calls visit(descriptor, index) for whole vectors, then for single samples.
+/// Calls visit(descriptor, index) for full vectors, then for single samples.
 template <typename Real, class Visit>
-HWY_INLINE void over_samples(std::size_t count, const Visit& visit) {
+HWY_INLINE void for_each_vector(std::size_t count, const Visit& visit) {
   const hn::ScalableTag<Real> d;
-  const hn::CappedTag<Real, 1> one;
+  const hn::CappedTag<Real, 1> single;
   std::size_t i = 0;
   for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) visit(d, i);
-  for (; i < count; ++i) visit(one, i);
+  for (; i < count; ++i) visit(single, i);
 }
 
 template <typename Real>
 void join_samples(const Real* a, const Real* b, std::size_t width, std::complex<Real>* z) {
-  over_samples<Real>(width, [&](auto d, std::size_t i) HWY_ATTR {
+  for_each_vector<Real>(width, [&](auto d, std::size_t i) HWY_ATTR {
     hn::StoreInterleaved2(hn::LoadU(d, a + i), hn::LoadU(d, b + i), d, reals(z + i));
   });
 }
 
 template <typename Real>
-void part_samples(const std::complex<Real>* z, std::size_t width, Real scale, Real* a, Real* b) {
-  over_samples<Real>(width, [&](auto d, std::size_t i) HWY_ATTR {
+void split_samples(const std::complex<Real>* z, std::size_t width, Real scale, Real* a, Real* b) {
+  for_each_vector<Real>(width, [&](auto d, std::size_t i) HWY_ATTR {
     hn::Vec<decltype(d)> real, imaginary;
     hn::LoadInterleaved2(d, reals(z + i), real, imaginary);
     const auto factor = hn::Set(d, scale);
@@ -57,10 +57,10 @@ void part_samples(const std::complex<Real>* z, std::size_t width, Real scale, Re
   });
 }
 
-/// Calls visit(descriptor, coefficient, place of the upper row's, place of the lower row's) for all
-/// lines, by vectors that divide a line.
+/// Calls visit(descriptor, index, upper coefficients, lower coefficients) for the vectors of all
+/// lines. The vector length divides the length of a line.
 template <typename Real, class Visit>
-HWY_INLINE void over_lines(const PairedLines<Real>& lines, const Visit& visit) {
+HWY_INLINE void for_each_line(const PairedLines<Real>& lines, const Visit& visit) {
   const hn::CappedTag<Real, kLine<Real>> d;
   for (std::size_t block = 0; block < lines.blocks; ++block) {
     std::complex<Real>* const upper = lines.first + block * lines.stride;
@@ -72,9 +72,9 @@ HWY_INLINE void over_lines(const PairedLines<Real>& lines, const Visit& visit) {
 
 /// With z' the conjugate of the opposite coefficient, 2 F(a) = z + z' and 2 F(b) = -i (z - z').
 template <typename Real>
-void part_coefficients(const std::complex<Real>* z, std::size_t width,
-                       const PairedLines<Real>& lines) {
-  over_lines(lines, [&](auto d, std::size_t i, Real* upper, Real* lower) HWY_ATTR {
+void split_coefficients(const std::complex<Real>* z, std::size_t width,
+                        const PairedLines<Real>& lines) {
+  for_each_line(lines, [&](auto d, std::size_t i, Real* upper, Real* lower) HWY_ATTR {
     hn::Vec<decltype(d)> real, imaginary, opposite_real, opposite_imaginary;
     hn::LoadInterleaved2(d, reals(z + i), real, imaginary);
     hn::LoadInterleaved2(d, reals(z + width + 1 - hn::Lanes(d) - i), opposite_real,
@@ -90,8 +90,8 @@ void part_coefficients(const std::complex<Real>* z, std::size_t width,
 
 template <typename Real>
 void join_coefficients(const PairedLines<Real>& lines, std::size_t width, std::complex<Real>* z) {
-  over_lines(lines, [&](auto d, std::size_t i, const Real* upper, const Real* lower) HWY_ATTR {
-    // The next pair's: its lines lie behind this one's.
+  for_each_line(lines, [&](auto d, std::size_t i, const Real* upper, const Real* lower) HWY_ATTR {
+    // The lines of the next pair of rows follow in memory.
     hwy::Prefetch(upper + 4 * kLine<Real>);
     hwy::Prefetch(lower + 4 * kLine<Real>);
     hn::Vec<decltype(d)> a_real, a_imaginary, b_real, b_imaginary;
@@ -107,22 +107,22 @@ void join_coefficients(const PairedLines<Real>& lines, std::size_t width, std::c
 
 template <typename Real>
 void multiply(const Real* factors, std::size_t count, std::complex<Real>* coefficients) {
-  over_samples<Real>(count, [&](auto d, std::size_t i) HWY_ATTR {
+  for_each_vector<Real>(count, [&](auto d, std::size_t i) HWY_ATTR {
     hn::Vec<decltype(d)> real, imaginary;
-    Real* const place = reals(coefficients + i);
-    hn::LoadInterleaved2(d, place, real, imaginary);
+    Real* const values = reals(coefficients + i);
+    hn::LoadInterleaved2(d, values, real, imaginary);
     const auto factor = hn::LoadU(d, factors + i);
-    hn::StoreInterleaved2(hn::Mul(factor, real), hn::Mul(factor, imaginary), d, place);
+    hn::StoreInterleaved2(hn::Mul(factor, real), hn::Mul(factor, imaginary), d, values);
   });
 }
 
 // A target exports functions, not templates.
 PairedRowKernels<float> kernels_f32() {
-  return {join_samples<float>, part_samples<float>, part_coefficients<float>,
+  return {join_samples<float>, split_samples<float>, split_coefficients<float>,
           join_coefficients<float>, multiply<float>};
 }
 PairedRowKernels<double> kernels_f64() {
-  return {join_samples<double>, part_samples<double>, part_coefficients<double>,
+  return {join_samples<double>, split_samples<double>, split_coefficients<double>,
           join_coefficients<double>, multiply<double>};
 }
 

@@ -1,5 +1,5 @@
-/// \file Kernels of PlaneFilter, on the best instruction set of the machine. Two rows a and b are
-/// transformed together as Z = F(a + i b). Real is float or double.
+/// \file Kernels of PlaneFilter, which use the best instruction set of the machine. Two rows a and b
+/// are transformed together as Z = F(a + i b). Real is float or double.
 #pragma once
 
 #include <complex>
@@ -7,8 +7,8 @@
 
 namespace touchtrial::engine {
 
-/// Where the coefficients of two rows lie: in blocks of a cache line's coefficients of the upper
-/// row, followed by those of the lower row.
+/// The storage of two rows' coefficients: blocks of one cache line of the upper row followed by one
+/// cache line of the lower row.
 template <typename Real>
 struct PairedLines {
   std::complex<Real>* first;  ///< of the upper row
@@ -21,13 +21,13 @@ struct PairedRowKernels {
   /// z = a + i b
   void (*join_rows)(const Real* a, const Real* b, std::size_t width, std::complex<Real>* z);
   /// a + i b = scale * z
-  void (*part_rows)(const std::complex<Real>* z, std::size_t width, Real scale, Real* a, Real* b);
+  void (*split_rows)(const std::complex<Real>* z, std::size_t width, Real scale, Real* a, Real* b);
   /// Writes the lines of 2 F(a) and 2 F(b).
   /// \param z  F(a + i b), width + 1 coefficients, the last one equal to the first
-  void (*part_spectra)(const std::complex<Real>* z, std::size_t width,
-                       const PairedLines<Real>& lines);
+  void (*split_spectra)(const std::complex<Real>* z, std::size_t width,
+                        const PairedLines<Real>& lines);
   /// The inverse: z = A + i B, where lines hold A and B, the spectra of real rows.
-  /// \param z  width + 1 coefficients, of which the last is to be ignored
+  /// \param z  receives width + 1 coefficients; the last is meaningless
   void (*join_spectra)(const PairedLines<Real>& lines, std::size_t width, std::complex<Real>* z);
   /// coefficients *= factors
   void (*multiply)(const Real* factors, std::size_t count, std::complex<Real>* coefficients);

@@ -14,7 +14,8 @@ namespace {
 
 enum PlanIndex : std::size_t { rows_forward, rows_inverse, columns_forward, columns_inverse };
 
-/// Even sides; and the coefficients that fill the last block have an opposite one.
+/// Requires an even side of at least 16, so that every coefficient in the last block has an
+/// opposite.
 int checked_side(int side) {
   if (side < 16 || side % 2 != 0) {
     throw std::invalid_argument("a filtered plane needs even sides of 16 or more");
@@ -22,14 +23,14 @@ int checked_side(int side) {
   return side;
 }
 
-/// Two rows joined as one of complex numbers, before and after their transform.
+/// Two rows joined into one complex row, before and after its transform.
 template <typename Real>
 struct JoinedRows {
   explicit JoinedRows(int width)
       : samples(static_cast<std::size_t>(width)), spectrum(samples.span().size() + 1) {}
 
   FftwBuffer<std::complex<Real>> samples;
-  FftwBuffer<std::complex<Real>> spectrum;  // and the first coefficient again
+  FftwBuffer<std::complex<Real>> spectrum;  // the last coefficient repeats the first
 };
 
 }  // namespace
@@ -49,28 +50,29 @@ template <typename Real>
 struct PlaneFilter<Real>::State {
   State(int rows, int columns)
       : blocks{checked_side(rows), checked_side(columns)},
-        // A line more than rows: the same row of all blocks should not fall on one place of caches.
+        // One extra line, so that a row of all blocks does not map to one cache set.
         stride(blocks.block_size() + kLanes),
         spectrum(blocks.count() * stride),
         plans(std::to_string(rows) + 'x' + std::to_string(columns) + "-filter",
               static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns),
               [this] { return make_plans(); }) {}
 
-  /// Transformed columns are contiguous: FFTW then needs no buffer of its own.
+  /// Transformed columns are contiguous, so FFTW needs no internal buffer.
   [[nodiscard]] std::vector<typename Fftw<Real>::Plan> make_plans() const {
     const JoinedRows<Real> rows(blocks.width);
     auto* const samples = as_fftw(rows.samples.data());
     auto* const coefficients = as_fftw(rows.spectrum.data());
-    const FftwBuffer<std::complex<Real>> transformed(blocks.block_size());
+    const FftwBuffer<std::complex<Real>> column_spectra(blocks.block_size());
     auto* const block = as_fftw(spectrum.data());
-    auto* const columns = as_fftw(transformed.data());
+    auto* const columns = as_fftw(column_spectra.data());
     constexpr unsigned flags = kPlannerFlags | FFTW_DESTROY_INPUT;
-    const auto row = [&](auto* from, auto* to, int sign) {
-      return Fftw<Real>::plan_many(1, &blocks.width, 1, from, nullptr, 1, 0, to, nullptr, 1, 0,
+    const auto plan_row = [&](auto* input, auto* output, int sign) {
+      return Fftw<Real>::plan_many(1, &blocks.width, 1, input, nullptr, 1, 0, output, nullptr, 1, 0,
                                    sign, flags);
     };
     const int height = blocks.height;
-    return {row(samples, coefficients, FFTW_FORWARD), row(coefficients, samples, FFTW_BACKWARD),
+    return {plan_row(samples, coefficients, FFTW_FORWARD),
+            plan_row(coefficients, samples, FFTW_BACKWARD),
             Fftw<Real>::plan_many(1, &height, kLanes, block, nullptr, kLanes, 1, columns, nullptr,
                                   1, height, FFTW_FORWARD, flags),
             Fftw<Real>::plan_many(1, &height, kLanes, columns, nullptr, 1, height, block, nullptr,
@@ -110,7 +112,7 @@ void PlaneFilter<Real>::write_rows(int y, const Real* upper, const Real* lower,
   paired_row_kernels<Real>().join_rows(upper, lower, width, samples);
   Fftw<Real>::transform(state_->plans[rows_forward], as_fftw(samples), as_fftw(spectrum));
   spectrum[width] = spectrum[0];
-  paired_row_kernels<Real>().part_spectra(spectrum, width, state_->lines(y));
+  paired_row_kernels<Real>().split_spectra(spectrum, width, state_->lines(y));
 }
 
 template <typename Real>
@@ -121,18 +123,18 @@ void PlaneFilter<Real>::read_rows(int y, Real scale, Real* upper, Real* lower,
   std::complex<Real>* const spectrum = workspace.buffers_->spectrum.data();
   paired_row_kernels<Real>().join_spectra(state_->lines(y), width, spectrum);
   Fftw<Real>::transform(state_->plans[rows_inverse], as_fftw(spectrum), as_fftw(samples));
-  // There and back, transforms multiply by the number of samples, and part_spectra by 2.
+  // A forward and an inverse transform multiply by the number of samples, and split_spectra by 2.
   const double gain = 2.0 * state_->blocks.height * state_->blocks.width;
-  paired_row_kernels<Real>().part_rows(samples, width, static_cast<Real>(scale / gain), upper,
-                                       lower);
+  paired_row_kernels<Real>().split_rows(samples, width, static_cast<Real>(scale / gain), upper,
+                                        lower);
 }
 
 template <typename Real>
 void PlaneFilter<Real>::filter_columns(std::size_t block, std::span<const Real> factors) {
   std::complex<Real>* const columns = state_->spectrum.data() + block * state_->stride;
   const std::size_t count = state_->blocks.block_size();
-  const FftwBuffer<std::complex<Real>> transformed(count);
-  std::complex<Real>* const coefficients = transformed.data();
+  const FftwBuffer<std::complex<Real>> column_spectra(count);
+  std::complex<Real>* const coefficients = column_spectra.data();
   Fftw<Real>::transform(state_->plans[columns_forward], as_fftw(columns), as_fftw(coefficients));
   paired_row_kernels<Real>().multiply(factors.data() + block * count, count, coefficients);
   Fftw<Real>::transform(state_->plans[columns_inverse], as_fftw(coefficients), as_fftw(columns));
@@ -144,10 +146,10 @@ std::vector<Real> arranged_factors(const Plane<double>& spectrum, int width) {
   std::vector<Real> factors(blocks.count() * blocks.block_size());
   for (std::size_t block = 0; block < blocks.count(); ++block) {
     blocks.for_each(block, [&](std::size_t i, int y, int x) {
-      const bool is_listed = x < spectrum.width();
+      const bool is_stored = x < spectrum.width();
       const int opposite_y = y == 0 ? 0 : blocks.height - y;
       factors[i] =
-          static_cast<Real>(is_listed ? spectrum.at(y, x) : spectrum.at(opposite_y, width - x));
+          static_cast<Real>(is_stored ? spectrum.at(y, x) : spectrum.at(opposite_y, width - x));
     });
   }
   return factors;

@@ -1,5 +1,5 @@
-/// \file Linear filters of real planes, diagonal in the Fourier basis, for callers that work on the
-/// rows before and after. Source: docs/decisions/README.md, decision 5.
+/// \file Linear filters of real planes, diagonal in the Fourier basis, for callers that process
+/// rows before and after filtering. Source: docs/decisions/README.md, decision 5.
 #pragma once
 
 #include "core/plane.hpp"
@@ -13,8 +13,8 @@
 
 namespace touchtrial::engine {
 
-/// How a filter's factors are arranged: column after column, in blocks of as many columns as a
-/// cache line has coefficients.
+/// The layout of a filter's factors: column by column, in blocks of columns. A block has as many
+/// columns as a cache line has coefficients.
 template <typename Real>
 struct ColumnBlocks {
   static constexpr int kLanes = 64 / sizeof(std::complex<Real>);
@@ -28,8 +28,8 @@ struct ColumnBlocks {
   [[nodiscard]] std::size_t block_size() const noexcept {
     return static_cast<std::size_t>(height) * kLanes;
   }
-  /// Calls visit(i, y, x) for each factor i of a block, which is that of frequency y along columns
-  /// and x along rows. Some x of the last block exceed width / 2: they stand for x - width.
+  /// Calls visit(i, y, x) for each factor i of a block, with its frequencies y along columns and x
+  /// along rows. In the last block, x may exceed width / 2 and then means x - width.
   template <typename Visit>
   void for_each(std::size_t block, const Visit& visit) const {
     std::size_t i = block * block_size();
@@ -40,21 +40,21 @@ struct ColumnBlocks {
   }
 };
 
-/// Arranges the factors of a filter.
-/// \param spectrum  real factors, the same for opposite frequencies, height x (width / 2 + 1) in the
-///   layout of RealFft's spectrum
+/// Arranges the factors of a filter in the layout of ColumnBlocks.
+/// \param spectrum  real factors, the same for opposite frequencies, height x (width / 2 + 1) in
+///   the layout of RealFft's spectrum
 /// \param width  of the plane, even, >= 16
 template <typename Real>
 [[nodiscard]] std::vector<Real> arranged_factors(const Plane<double>& spectrum, int width);
 
-/// A plane that is filtered in place on a torus. Between the steps it holds the transforms of its
-/// rows. So one pass filters all columns, block by block, and one pass reads rows, works on them
-/// and writes the next ones, both while a block is in the processor's cache. Two rows are
-/// transformed together, as real and imaginary part of one. Real is float or double.
+/// A plane filtered in place on a torus. Between steps it stores the transforms of its rows, so one
+/// pass filters all columns block by block, and one pass reads, processes and rewrites the rows,
+/// both while data are in the cache. Two rows are transformed together, as the real and imaginary
+/// parts of one complex row. Real is float or double.
 ///
-/// Threads: different blocks of columns, and different pairs of rows, may be worked on at the same
-/// time, but not rows beside columns. Blocks have one size and all blocks one plan, so results do
-/// not depend on the assignment of threads.
+/// Threads: different column blocks may be processed concurrently, and so may different row pairs,
+/// but not rows and columns together. All blocks have the same size and plan, so results do not
+/// depend on the assignment of threads.
 template <typename Real>
 class PlaneFilter {
  public:
@@ -83,16 +83,16 @@ class PlaneFilter {
   };
 
   /// Writes two rows.
-  /// \param y  of the upper one; even
+  /// \param y  index of the upper row; even
   /// \param upper,lower  width samples each
-  /// \throws std::bad_alloc if FFTW lacks memory; so do all that transform
+  /// \throws std::bad_alloc if FFTW is out of memory, as do all transforming functions
   void write_rows(int y, const Real* upper, const Real* lower, Workspace& workspace);
-  /// Reads two rows, multiplied by `scale`: after filter_columns with factors of 1 and with a scale
-  /// of 1, those that were written. Reading changes nothing.
+  /// Reads two rows, multiplied by `scale`. After filter_columns() with factors of 1, a scale of 1
+  /// returns the rows as written.
   void read_rows(int y, Real scale, Real* upper, Real* lower, Workspace& workspace) const;
 
   /// Filters the columns of one block.
-  /// \param factors  of all blocks, arranged
+  /// \param factors  of all blocks, from arranged_factors()
   /// \throws std::bad_alloc if there is no memory for a block
   void filter_columns(std::size_t block, std::span<const Real> factors);
 

@@ -55,18 +55,18 @@ void RealFft<Real>::inverse() {
                            state_->plane.data());
 }
 
-// They replace functions of the same names in FFTW's libraries, which call them when out of memory.
-// The originals terminate the program.
+// These replace FFTW's functions of the same names, which FFTW calls when it is out of memory and
+// which would terminate the program.
 extern "C" [[gnu::visibility("default")]] void fftw_assertion_failed(const char* /*what*/,
                                                                      int /*line*/,
                                                                      const char* /*file*/) {
-  lacked_memory() = true;
+  out_of_memory_flag() = true;
   throw std::bad_alloc();
 }
 extern "C" [[gnu::visibility("default")]] void fftwf_assertion_failed(const char* /*what*/,
                                                                       int /*line*/,
                                                                       const char* /*file*/) {
-  lacked_memory() = true;
+  out_of_memory_flag() = true;
   throw std::bad_alloc();
 }
 

@@ -8,8 +8,8 @@
 namespace touchtrial::engine {
 
 /// A transform of one size with its buffers. Real is float or double. Plans are estimated, never
-/// measured, so that the results are the same in every run on a machine. Only one thread at a time
-/// may use an object. Different objects may be created, used and destroyed at the same time.
+/// measured, so that the results are the same in every run on a machine. Not thread-safe, but
+/// different objects may be created, used and destroyed concurrently.
 template <typename Real>
 class RealFft {
  public:
@@ -27,11 +27,11 @@ class RealFft {
   [[nodiscard]] std::span<std::complex<Real>> spectrum() noexcept;
 
   /// plane -> spectrum, unscaled; the plane keeps its values.
-  /// \throws std::bad_alloc if FFTW lacks memory
+  /// \throws std::bad_alloc if FFTW is out of memory
   void forward();
   /// spectrum -> plane, unscaled: forward and inverse multiply by height * width. Destroys the
   /// spectrum.
-  /// \throws std::bad_alloc if FFTW lacks memory
+  /// \throws std::bad_alloc if FFTW is out of memory
   void inverse();
 
  private:

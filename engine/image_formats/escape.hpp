@@ -1,4 +1,4 @@
-/// \file Leaves libpng and libjpeg from their error handlers, which must not return.
+/// \file Jumps out of the error handlers of libpng and libjpeg, which must not return.
 #pragma once
 
 #include <array>
@@ -9,21 +9,21 @@ namespace touchtrial::engine {
 
 /// The jump target of an error handler, and its message.
 struct Escape {
-  std::jmp_buf back;
-  std::array<char, 200> complaint{};
+  std::jmp_buf jump_target;
+  std::array<char, 200> message{};
 
-  [[noreturn]] void leave(const char* what) noexcept {
-    std::snprintf(complaint.data(), complaint.size(), "%s", what);
-    std::longjmp(back, 1);
+  [[noreturn]] void leave(const char* reason) noexcept {
+    std::snprintf(message.data(), message.size(), "%s", reason);
+    std::longjmp(jump_target, 1);
   }
 };
 
-/// Runs `steps`, which an error handler may leave half-way by `escape`. The jump calls no
-/// destructors: create everything that needs one outside `steps`, and capture it by reference.
-/// \return whether the steps reached their end
+/// Runs `steps`, which an error handler may leave through `escape`. The jump calls no destructors:
+/// create objects that need one outside `steps`, and capture them by reference.
+/// \return whether the steps completed
 template <typename Steps>
-[[nodiscard, gnu::noinline]] bool reaches_end(Escape& escape, const Steps& steps) {
-  if (setjmp(escape.back) != 0) return false;
+[[nodiscard, gnu::noinline]] bool run_guarded(Escape& escape, const Steps& steps) {
+  if (setjmp(escape.jump_target) != 0) return false;
   steps();
   return true;
 }

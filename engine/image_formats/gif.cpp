@@ -1,4 +1,4 @@
-// GIF, by stb_image.
+// Reads GIF files with stb_image.
 #include "engine/image_file.hpp"
 #include "engine/image_formats/image_format.hpp"
 
@@ -15,32 +15,32 @@ namespace {
 /// A file in memory that stb_image reads byte by byte. After the end of the file it returns zeros;
 /// the attempt is recorded.
 struct ByteStream {
-  ByteView left;
-  bool ended = false;
+  ByteView remaining;
+  bool read_past_end = false;
 };
 
-int stream_bytes(void* user, char* to, int count) {
+int read_stream(void* user, char* buffer, int count) {
   auto& stream = *static_cast<ByteStream*>(user);
-  const std::size_t taken = std::min(stream.left.size(), static_cast<std::size_t>(count));
-  // It requests more than it needs, but only when it needs data.
-  if (taken == 0) stream.ended = true;
-  std::memcpy(to, stream.left.data(), taken);
-  stream.left = stream.left.subspan(taken);
-  return static_cast<int>(taken);
+  const std::size_t size = std::min(stream.remaining.size(), static_cast<std::size_t>(count));
+  // stb_image requests more bytes than it needs, but only when it needs some.
+  if (size == 0) stream.read_past_end = true;
+  std::memcpy(buffer, stream.remaining.data(), size);
+  stream.remaining = stream.remaining.subspan(size);
+  return static_cast<int>(size);
 }
 
 void skip_stream(void* user, int count) {
   auto& stream = *static_cast<ByteStream*>(user);
-  const auto skipped = static_cast<std::size_t>(std::max(count, 0));
-  if (count < 0 || skipped > stream.left.size()) stream.ended = true;
-  stream.left = stream.left.subspan(std::min(skipped, stream.left.size()));
+  const auto skip_size = static_cast<std::size_t>(std::max(count, 0));
+  if (count < 0 || skip_size > stream.remaining.size()) stream.read_past_end = true;
+  stream.remaining = stream.remaining.subspan(std::min(skip_size, stream.remaining.size()));
 }
 
-int stream_ended(void* user) {
-  return static_cast<ByteStream*>(user)->left.empty() ? 1 : 0;
+int is_stream_end(void* user) {
+  return static_cast<ByteStream*>(user)->remaining.empty() ? 1 : 0;
 }
 
-constexpr stbi_io_callbacks kReading = {stream_bytes, skip_stream, stream_ended};
+constexpr stbi_io_callbacks kStreamCallbacks = {read_stream, skip_stream, is_stream_end};
 
 void free_pixels(stbi_uc* pixels) {
   stbi_image_free(pixels);
@@ -53,18 +53,19 @@ GreyImage read_with_stb(ByteView file, GreyScale& scale) {
   int height = 0;
   int stored_channels = 0;
   const std::unique_ptr<stbi_uc, decltype(&free_pixels)> pixels(
-      stbi_load_from_callbacks(&kReading, &stream, &width, &height, &stored_channels, kChannels),
+      stbi_load_from_callbacks(&kStreamCallbacks, &stream, &width, &height, &stored_channels,
+                               kChannels),
       free_pixels);
-  if (stream.ended) throw_truncated_image();
+  if (stream.read_past_end) throw_truncated_image();
   if (!pixels) {
-    const std::string complaint = stbi_failure_reason();
-    if (complaint == "outofmem") throw std::bad_alloc();
-    throw_unsupported_image("cannot be decoded (" + complaint + ")");
+    const std::string message = stbi_failure_reason();
+    if (message == "outofmem") throw std::bad_alloc();
+    throw_unsupported_image("cannot be decoded (" + message + ")");
   }
   GreyImage image(height, width);
   for (int y = 0; y < height; ++y) {
-    const std::size_t at = image.row(0).size() * static_cast<std::size_t>(y) * kChannels;
-    scale.make_grey(pixels.get() + at, kChannels, Alpha::straight, image.row(y));
+    const std::size_t offset = image.row(0).size() * static_cast<std::size_t>(y) * kChannels;
+    scale.make_grey(pixels.get() + offset, kChannels, Alpha::straight, image.row(y));
   }
   return image;
 }
@@ -73,8 +74,8 @@ GreyImage read_with_stb(ByteView file, GreyScale& scale) {
 class GifBlocks {
  public:
   explicit GifBlocks(ByteView file) : file_(file) {
-    constexpr std::size_t kPaletteFlagsAt = 10;
-    at_ = 13 + palette_bytes(kPaletteFlagsAt);
+    constexpr std::size_t kPaletteFlagsOffset = 10;
+    offset_ = 13 + palette_bytes(kPaletteFlagsOffset);
     while (step()) {
     }
   }
@@ -86,30 +87,30 @@ class GifBlocks {
  private:
   enum Block : std::uint8_t { kExtension = 0x21, kPicture = 0x2C, kEnd = 0x3B };
 
-  [[nodiscard]] std::size_t byte(std::size_t at) const { return bytes_at(file_, at, 1)[0]; }
+  [[nodiscard]] std::size_t byte(std::size_t offset) const { return bytes_at(file_, offset, 1)[0]; }
 
-  [[nodiscard]] std::size_t palette_bytes(std::size_t flags_at) const {
-    const std::size_t flags = byte(flags_at);
+  [[nodiscard]] std::size_t palette_bytes(std::size_t flags_offset) const {
+    const std::size_t flags = byte(flags_offset);
     return (flags & 0x80U) == 0 ? 0 : std::size_t{3} << ((flags & 7U) + 1);
   }
 
   /// \return false after the end
   bool step() {
-    if (at_ == file_.size() && pictures_ > 0) {
+    if (offset_ == file_.size() && pictures_ > 0) {
       lacks_end_ = true;
       return false;
     }
-    switch (byte(at_)) {
+    switch (byte(offset_)) {
       case kEnd:
         return false;
       case kExtension:
-        skip_data(at_ + 2);
+        skip_data(offset_ + 2);
         return true;
       case kPicture: {
         constexpr std::size_t kSize = 10;
-        const std::uint64_t before = data_bytes_;
-        skip_data(at_ + kSize + palette_bytes(at_ + kSize - 1) + 1);
-        if (pictures_++ == 0) packed_bytes_ = data_bytes_ - before;
+        const std::uint64_t bytes_before = data_bytes_;
+        skip_data(offset_ + kSize + palette_bytes(offset_ + kSize - 1) + 1);
+        if (pictures_++ == 0) packed_bytes_ = data_bytes_ - bytes_before;
         return true;
       }
       default:
@@ -117,14 +118,14 @@ class GifBlocks {
     }
   }
 
-  /// Blocks of data, each after its size, up to an empty one.
-  void skip_data(std::size_t at) {
-    for (; byte(at) != 0; at += byte(at) + 1) data_bytes_ += byte(at);
-    at_ = at + 1;
+  /// Skips blocks of data, each preceded by its size, up to an empty one.
+  void skip_data(std::size_t offset) {
+    for (; byte(offset) != 0; offset += byte(offset) + 1) data_bytes_ += byte(offset);
+    offset_ = offset + 1;
   }
 
   ByteView file_;
-  std::size_t at_ = 0;
+  std::size_t offset_ = 0;
   int pictures_ = 0;
   bool lacks_end_ = false;
   std::uint64_t packed_bytes_ = 0;  ///< of the first picture

@@ -14,37 +14,37 @@ struct Signature {
   std::string_view start;
   ImageKind kind;
 };
-constexpr std::array kSupported = {Signature{"\x89PNG\r\n\x1a\n"sv, ImageKind::png},
-                                   Signature{"\xff\xd8\xff"sv, ImageKind::jpeg},
-                                   Signature{"II*\0"sv, ImageKind::tiff},
-                                   Signature{"MM\0*"sv, ImageKind::tiff},
-                                   Signature{"BM"sv, ImageKind::bmp},
-                                   Signature{"GIF8"sv, ImageKind::gif},
-                                   Signature{"P2"sv, ImageKind::pnm},
-                                   Signature{"P3"sv, ImageKind::pnm},
-                                   Signature{"P5"sv, ImageKind::pnm},
-                                   Signature{"P6"sv, ImageKind::pnm}};
+constexpr std::array kSignatures = {Signature{"\x89PNG\r\n\x1a\n"sv, ImageKind::png},
+                                    Signature{"\xff\xd8\xff"sv, ImageKind::jpeg},
+                                    Signature{"II*\0"sv, ImageKind::tiff},
+                                    Signature{"MM\0*"sv, ImageKind::tiff},
+                                    Signature{"BM"sv, ImageKind::bmp},
+                                    Signature{"GIF8"sv, ImageKind::gif},
+                                    Signature{"P2"sv, ImageKind::pnm},
+                                    Signature{"P3"sv, ImageKind::pnm},
+                                    Signature{"P5"sv, ImageKind::pnm},
+                                    Signature{"P6"sv, ImageKind::pnm}};
 
 struct ForeignSignature {
-  std::size_t at;
+  std::size_t offset;
   std::string_view text;
   std::string_view name;
 };
-constexpr std::array kForeign = {ForeignSignature{8, "WEBP"sv, "WebP"},
-                                 ForeignSignature{4, "ftyp"sv, "HEIF, AVIF or video"},
-                                 ForeignSignature{4, "jP  "sv, "JPEG 2000"},
-                                 ForeignSignature{0, "\xff\x4f\xff\x51"sv, "JPEG 2000"},
-                                 ForeignSignature{0, "II+\0"sv, "BigTIFF"},
-                                 ForeignSignature{0, "MM\0+"sv, "BigTIFF"},
-                                 ForeignSignature{0, "8BPS"sv, "Photoshop"},
-                                 ForeignSignature{0, "\x76\x2f\x31\x01"sv, "OpenEXR"},
-                                 ForeignSignature{0, "%PDF"sv, "PDF"},
-                                 ForeignSignature{0, "P1"sv, "PBM"},
-                                 ForeignSignature{0, "P4"sv, "PBM"},
-                                 ForeignSignature{0, "P7"sv, "PAM"}};
+constexpr std::array kForeignSignatures = {ForeignSignature{8, "WEBP"sv, "WebP"},
+                                           ForeignSignature{4, "ftyp"sv, "HEIF, AVIF or video"},
+                                           ForeignSignature{4, "jP  "sv, "JPEG 2000"},
+                                           ForeignSignature{0, "\xff\x4f\xff\x51"sv, "JPEG 2000"},
+                                           ForeignSignature{0, "II+\0"sv, "BigTIFF"},
+                                           ForeignSignature{0, "MM\0+"sv, "BigTIFF"},
+                                           ForeignSignature{0, "8BPS"sv, "Photoshop"},
+                                           ForeignSignature{0, "\x76\x2f\x31\x01"sv, "OpenEXR"},
+                                           ForeignSignature{0, "%PDF"sv, "PDF"},
+                                           ForeignSignature{0, "P1"sv, "PBM"},
+                                           ForeignSignature{0, "P4"sv, "PBM"},
+                                           ForeignSignature{0, "P7"sv, "PAM"}};
 
-bool holds(std::string_view file, std::size_t at, std::string_view text) {
-  return file.size() >= at && file.substr(at).starts_with(text);
+bool has_text_at(std::string_view file, std::size_t offset, std::string_view text) {
+  return file.size() >= offset && file.substr(offset).starts_with(text);
 }
 
 }  // namespace
@@ -52,11 +52,11 @@ bool holds(std::string_view file, std::size_t at, std::string_view text) {
 ImageKind kind_of_image(ByteView file) {
   const std::string_view start(reinterpret_cast<const char*>(file.data()),
                                file.size() < 16 ? file.size() : 16);
-  for (const Signature& signature : kSupported) {
+  for (const Signature& signature : kSignatures) {
     if (start.starts_with(signature.start)) return signature.kind;
   }
-  for (const ForeignSignature& signature : kForeign) {
-    if (!holds(start, signature.at, signature.text)) continue;
+  for (const ForeignSignature& signature : kForeignSignatures) {
+    if (!has_text_at(start, signature.offset, signature.text)) continue;
     throw ImageFault{"is a " + std::string(signature.name) + " file, a kind that is not supported",
                      "save it as PNG, JPEG, TIFF, BMP, GIF or PGM"};
   }
@@ -68,9 +68,9 @@ void throw_truncated_image() {
   throw ImageFault{"is truncated or damaged", "copy or export it again [truncated-picture]"};
 }
 
-void throw_damaged_image(const std::string& complaint) {
-  if (complaint.empty()) throw_truncated_image();
-  throw ImageFault{"is damaged (" + complaint + ")", "copy or export it again [damaged-picture]"};
+void throw_damaged_image(const std::string& message) {
+  if (message.empty()) throw_truncated_image();
+  throw ImageFault{"is damaged (" + message + ")", "copy or export it again [damaged-picture]"};
 }
 
 void throw_unsupported_image(const std::string& what) {
@@ -84,7 +84,7 @@ void check_image_size(std::int64_t width_px, std::int64_t height_px) {
   }
   if (width_px > kMaxImagePixels / height_px) {
     throw ImageFault{
-        "has " + size + ", more than " + std::to_string(kMaxImagePixels) + " pixels in all",
+        "has " + size + ", more than " + std::to_string(kMaxImagePixels) + " pixels in total",
         "crop or shrink it"};
   }
   if (width_px > kMaxSidePx || height_px > kMaxSidePx) {
@@ -93,13 +93,13 @@ void check_image_size(std::int64_t width_px, std::int64_t height_px) {
   }
 }
 
-ByteView bytes_at(ByteView bytes, std::size_t at, std::size_t count) {
-  if (at > bytes.size() || count > bytes.size() - at) throw_truncated_image();
-  return bytes.subspan(at, count);
+ByteView bytes_at(ByteView bytes, std::size_t offset, std::size_t count) {
+  if (offset > bytes.size() || count > bytes.size() - offset) throw_truncated_image();
+  return bytes.subspan(offset, count);
 }
 
-std::uint32_t number_at(ByteView bytes, std::size_t at, std::size_t size, ByteOrder order) {
-  const ByteView digits = bytes_at(bytes, at, size);
+std::uint32_t number_at(ByteView bytes, std::size_t offset, std::size_t size, ByteOrder order) {
+  const ByteView digits = bytes_at(bytes, offset, size);
   std::uint32_t number = 0;
   for (std::size_t i = 0; i < size; ++i) {
     number = number << 8U | digits[order == ByteOrder::big ? i : size - 1 - i];

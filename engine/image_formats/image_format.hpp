@@ -1,5 +1,5 @@
-/// \file The readers of all kinds of pictures, and their shared parts: faults, numbers in files,
-///   and conversion of samples to 8-bit grey. Source of the conversion: docs/method.md, "Images".
+/// \file The readers of all kinds of pictures, and shared helpers for faults, numbers in files and
+/// conversion of samples to 8-bit grey. Source of the conversion: docs/method.md, "Images".
 #pragma once
 
 #include "core/bytes.hpp"
@@ -22,15 +22,15 @@ namespace touchtrial::engine {
 enum class ImageKind { png, jpeg, tiff, bmp, gif, pnm };
 
 /// Recognises a picture by the first bytes of its file.
-/// \throws ImageFault if it is a picture of an unsupported kind, or not a picture
+/// \throws ImageFault if it is not a picture of a supported kind
 [[nodiscard]] ImageKind kind_of_image(ByteView file);
 
 class GreyScale;
 
-/// Each function reads a file of its kind. They ignore metadata, including orientation and colour
-/// profiles. They allocate memory only if the structure of the file shows that the samples exist.
-/// They print nothing, and are thread-safe.
-/// \param notes  gets the number of pictures, and whether the end marker is missing
+/// These functions decode a file of one kind. They ignore metadata, including orientation and
+/// colour profiles, allocate memory only if the structure of the file shows that the samples exist,
+/// and print nothing. Thread-safe.
+/// \param notes  receives the number of pictures, and whether the end marker is missing
 /// \throws ImageFault if the file is truncated, damaged, too large or of an unsupported type
 [[nodiscard]] GreyImage read_png(ByteView file, GreyScale& scale);
 [[nodiscard]] GreyImage read_jpeg(ByteView file, GreyScale& scale, ImageNotes& notes);
@@ -57,8 +57,8 @@ struct ImageFault {
 };
 
 [[noreturn]] void throw_truncated_image();
-/// \param complaint  the library's message; may be empty
-[[noreturn]] void throw_damaged_image(const std::string& complaint);
+/// \param message  the library's message; may be empty
+[[noreturn]] void throw_damaged_image(const std::string& message);
 [[noreturn]] void throw_unsupported_image(const std::string& what);
 
 /// The longest side of a picture; also libpng's limit.
@@ -70,26 +70,26 @@ void check_image_size(std::int64_t width_px, std::int64_t height_px);
 
 enum class ByteOrder { little, big };
 
-/// `count` bytes from `at` on.
-/// \throws ImageFault (truncated) if the buffer ends before
-[[nodiscard]] ByteView bytes_at(ByteView bytes, std::size_t at, std::size_t count);
+/// Returns `count` bytes from an offset.
+/// \throws ImageFault (truncated) if the buffer is too short
+[[nodiscard]] ByteView bytes_at(ByteView bytes, std::size_t offset, std::size_t count);
 
-/// An unsigned number of `size` (1 to 4) bytes.
+/// Returns an unsigned number of `size` (1 to 4) bytes.
 /// \throws ImageFault (truncated)
-[[nodiscard]] std::uint32_t number_at(ByteView bytes, std::size_t at, std::size_t size,
+[[nodiscard]] std::uint32_t number_at(ByteView bytes, std::size_t offset, std::size_t size,
                                       ByteOrder order);
 
-[[nodiscard]] inline std::uint32_t big16(ByteView bytes, std::size_t at) {
-  return number_at(bytes, at, 2, ByteOrder::big);
+[[nodiscard]] inline std::uint32_t big16(ByteView bytes, std::size_t offset) {
+  return number_at(bytes, offset, 2, ByteOrder::big);
 }
-[[nodiscard]] inline std::uint32_t big32(ByteView bytes, std::size_t at) {
-  return number_at(bytes, at, 4, ByteOrder::big);
+[[nodiscard]] inline std::uint32_t big32(ByteView bytes, std::size_t offset) {
+  return number_at(bytes, offset, 4, ByteOrder::big);
 }
-[[nodiscard]] inline std::uint32_t little16(ByteView bytes, std::size_t at) {
-  return number_at(bytes, at, 2, ByteOrder::little);
+[[nodiscard]] inline std::uint32_t little16(ByteView bytes, std::size_t offset) {
+  return number_at(bytes, offset, 2, ByteOrder::little);
 }
-[[nodiscard]] inline std::uint32_t little32(ByteView bytes, std::size_t at) {
-  return number_at(bytes, at, 4, ByteOrder::little);
+[[nodiscard]] inline std::uint32_t little32(ByteView bytes, std::size_t offset) {
+  return number_at(bytes, offset, 4, ByteOrder::little);
 }
 
 /// floor(v / 257 + 0.5) for a 16-bit sample; an 8-bit sample is itself.
@@ -107,8 +107,8 @@ enum class ByteOrder { little, big };
 }
 
 /// floor(colour * alpha / 255 + 0.5): alpha composited on black.
-[[nodiscard]] constexpr std::uint32_t over_black(std::uint32_t colour,
-                                                 std::uint32_t alpha) noexcept {
+[[nodiscard]] constexpr std::uint32_t composite_on_black(std::uint32_t colour,
+                                                         std::uint32_t alpha) noexcept {
   return (2U * colour * alpha + 255U) / 510U;
 }
 
@@ -118,7 +118,7 @@ enum class ByteOrder { little, big };
   return static_cast<std::uint8_t>((299U * red + 587U * green + 114U * blue + 500U) / 1000U);
 }
 
-/// The meaning of the second channel of grey, or the fourth of colour.
+/// The meaning of the last of two or four channels.
 enum class Alpha {
   straight,    ///< opacity; the pixel is composited on black
   multiplied,  ///< opacity, with premultiplied colours
@@ -129,37 +129,36 @@ enum class Alpha {
 class WideSamples {
  public:
   void add(std::uint32_t sample) noexcept {
-    ++of_bits_[static_cast<std::size_t>(std::bit_width(sample))];
+    ++counts_[static_cast<std::size_t>(std::bit_width(sample))];
   }
   /// The number of samples that need more than this many bits.
-  [[nodiscard]] std::uint64_t above(int bits) const noexcept {
-    return std::accumulate(of_bits_.begin() + bits + 1, of_bits_.end(), std::uint64_t{0});
+  [[nodiscard]] std::uint64_t count_above(int bits) const noexcept {
+    return std::accumulate(counts_.begin() + bits + 1, counts_.end(), std::uint64_t{0});
   }
-  [[nodiscard]] std::uint64_t count() const noexcept { return of_bits_[0] + above(0); }
-  /// The number of bits used, except by at most one sample in a thousand, because hot pixels use
-  /// all bits.
+  [[nodiscard]] std::uint64_t count() const noexcept { return counts_[0] + count_above(0); }
+  /// The number of bits used by all but at most one sample in a thousand: hot pixels use all bits.
   [[nodiscard]] int bits() const noexcept {
     int bits = 16;
-    while (bits > 0 && above(bits - 1) * 1000 <= count()) --bits;
+    while (bits > 0 && count_above(bits - 1) * 1000 <= count()) --bits;
     return bits;
   }
 
  private:
-  std::array<std::uint64_t, 17> of_bits_{};
+  std::array<std::uint64_t, 17> counts_{};
 };
 
-/// Converts the samples of one picture to 8-bit grey, and records the loss.
+/// Converts the samples of one picture to 8-bit grey and counts wide and transparent samples.
 class GreyScale {
  public:
   explicit GreyScale(const SampleScale& samples) noexcept
       : bits_(samples.bits), heights_(samples.heights) {}
 
-  /// From now on, opaque pixels are 255 and all others 0.
+  /// Switches to opacity: opaque pixels become 255 and all others 0.
   void show_opacity() noexcept { shows_opacity_ = true; }
 
   std::uint32_t level_of(std::uint8_t sample) noexcept { return sample; }
   std::uint32_t level_of(std::uint16_t sample) noexcept {
-    wide_.add(sample);
+    wide_samples_.add(sample);
     if (bits_ == 0) return to_8_bit(sample);
     const std::uint32_t maximum = (1U << static_cast<unsigned>(bits_)) - 1U;
     return to_8_bit(std::min<std::uint32_t>(sample, maximum), maximum);
@@ -169,12 +168,14 @@ class GreyScale {
   template <typename Sample>
   [[nodiscard]] std::uint8_t grey_of(const Sample* pixel, int channels, Alpha alpha) noexcept {
     const bool has_alpha = channels % 2 == 0 && alpha != Alpha::none;
-    // Opacity may have 16 bits even with fewer bits of colour, so it does not count.
+    // Alpha may use 16 bits even where colour uses fewer, so it is left out of the histogram.
     std::uint32_t opacity = has_alpha ? to_8_bit(pixel[channels - 1]) : 255U;
-    if (opacity < 255U) ++transparent_;
+    if (opacity < 255U) ++transparent_pixels_;
     if (shows_opacity_) return opacity < 255U ? 0 : 255;
     if (alpha == Alpha::multiplied) opacity = 255U;
-    const auto visible = [&](int channel) { return over_black(level_of(pixel[channel]), opacity); };
+    const auto visible = [&](int channel) {
+      return composite_on_black(level_of(pixel[channel]), opacity);
+    };
     if (channels <= 2) return static_cast<std::uint8_t>(visible(0));
     return luma(visible(0), visible(1), visible(2));
   }
@@ -189,22 +190,22 @@ class GreyScale {
     }
   }
 
-  /// Replaces the histogram if the samples were inverted first.
-  void set_wide(const WideSamples& samples) noexcept { wide_ = samples; }
+  /// Replaces the histogram with one of the samples before inversion.
+  void set_wide_samples(const WideSamples& samples) noexcept { wide_samples_ = samples; }
 
   [[nodiscard]] int bits() const noexcept { return bits_; }
   [[nodiscard]] const std::optional<std::pair<double, double>>& heights() const noexcept {
     return heights_;
   }
-  [[nodiscard]] const WideSamples& wide() const noexcept { return wide_; }
-  [[nodiscard]] std::uint64_t transparent_pixels() const noexcept { return transparent_; }
+  [[nodiscard]] const WideSamples& wide_samples() const noexcept { return wide_samples_; }
+  [[nodiscard]] std::uint64_t transparent_pixels() const noexcept { return transparent_pixels_; }
 
  private:
   int bits_;
   std::optional<std::pair<double, double>> heights_;
-  WideSamples wide_;
+  WideSamples wide_samples_;
   bool shows_opacity_ = false;
-  std::uint64_t transparent_ = 0;
+  std::uint64_t transparent_pixels_ = 0;
 };
 
 }  // namespace touchtrial::engine

@@ -8,7 +8,7 @@
 #include <new>
 #include <utility>
 
-// libjpeg's headers want <cstdio> before them.
+// libjpeg's headers need <cstdio> before them.
 #include <jerror.h>
 #include <jpeglib.h>
 
@@ -33,24 +33,24 @@ enum Marker : std::uint32_t {
   kComment = 0xFE,
 };
 
-/// Far more than any encoder writes. Each scan of a progressive file covers the whole picture.
+/// More scans than any encoder writes. Each scan of a progressive file covers the whole picture.
 constexpr int kMaxScans = 100;
-/// Enough for the coefficients of the largest progressive picture and for libjpeg's tables.
+/// Suffices for the coefficients of the largest progressive picture and for libjpeg's tables.
 constexpr long kMaxMemory = 6L * kMaxImagePixels + (1L << 28U);
 
 struct Frame {
   std::uint32_t width = 0;  ///< 0: not seen yet
   std::uint32_t height = 0;
   std::uint32_t channels = 0;
-  bool progressive = false;
+  bool is_progressive = false;
 
   [[nodiscard]] std::uint64_t samples() const {
     return std::uint64_t{width + 7} * (height + 7) * channels;
   }
 };
 
-/// A coefficient takes at most 16 bits of code and 11 of value, which stuffing can double.
-constexpr std::uint64_t kMaxBytesOfSample = 8;
+/// A coefficient has at most 16 bits of code and 11 of value, which byte stuffing can double.
+constexpr std::uint64_t kMaxBytesPerSample = 8;
 
 bool is_frame(std::uint32_t marker) {
   return marker >= 0xC0 && marker <= 0xCF && marker != kHuffmanTables && marker != kJpegExtension &&
@@ -61,8 +61,8 @@ bool is_baseline_or_progressive(std::uint32_t marker) {
   return marker >= 0xC0 && marker <= 0xC2;
 }
 
-/// Whether a segment only has metadata: profiles, thumbnails, orientation. JFIF and Adobe segments
-/// are kept, because they define the meaning of the channels.
+/// Whether a segment contains only metadata: profiles, thumbnails, orientation. JFIF and Adobe
+/// segments define the meaning of the channels.
 bool is_metadata(std::uint32_t marker) {
   return marker == kComment || (marker > kApp0 && marker <= kApp15 && marker != kApp14);
 }
@@ -86,105 +86,107 @@ Frame read_frame(std::uint32_t marker, ByteView segment) {
 
 /// The position of the 0xFF of the next marker after entropy-coded data, or the file's end.
 /// \throws ImageFault if the file ends within a marker
-std::size_t end_of_scan_data(ByteView file, std::size_t at) {
+std::size_t end_of_scan_data(ByteView file, std::size_t offset) {
   while (true) {
-    const auto found = std::find(file.begin() + static_cast<std::ptrdiff_t>(at), file.end(), 0xFF);
-    at = static_cast<std::size_t>(found - file.begin());
-    if (at + 1 >= file.size()) return at;  // with half of a marker, or none
-    const std::uint32_t next = number_at(file, at + 1, 1, ByteOrder::big);
-    const bool inside = next == kStuffed || (next >= kRestart0 && next <= kRestart7);
-    if (!inside && next != 0xFF) return at;
-    at += inside ? 2 : 1;
+    const auto marker =
+        std::find(file.begin() + static_cast<std::ptrdiff_t>(offset), file.end(), 0xFF);
+    offset = static_cast<std::size_t>(marker - file.begin());
+    if (offset + 1 >= file.size()) return offset;  // at most half of a marker follows
+    const std::uint32_t next_byte = number_at(file, offset + 1, 1, ByteOrder::big);
+    const bool is_data =
+        next_byte == kStuffed || (next_byte >= kRestart0 && next_byte <= kRestart7);
+    if (!is_data && next_byte != 0xFF) return offset;
+    offset += is_data ? 2 : 1;
   }
 }
 
-/// Iterates over the segments and copies those that affect pixels.
-class Walk {
+/// Copies the segments that affect pixels.
+class SegmentFilter {
  public:
-  explicit Walk(ByteView file) : file_(file) { copy(0, 2); }
+  explicit SegmentFilter(ByteView file) : file_(file) { copy(0, 2); }
 
   /// \return false after the end marker
   bool step() {
-    if (at_ + 1 >= file_.size() && is_whole_without_end()) {
+    if (offset_ + 1 >= file_.size() && is_complete_without_end()) {
       lacks_end_ = true;
       return false;
     }
-    while (number_at(file_, at_ + 1, 1, ByteOrder::big) == 0xFF) ++at_;  // fill bytes
-    if (number_at(file_, at_, 1, ByteOrder::big) != 0xFF) throw_truncated_image();
-    const std::uint32_t marker = number_at(file_, at_ + 1, 1, ByteOrder::big);
+    while (number_at(file_, offset_ + 1, 1, ByteOrder::big) == 0xFF) ++offset_;  // fill bytes
+    if (number_at(file_, offset_, 1, ByteOrder::big) != 0xFF) throw_truncated_image();
+    const std::uint32_t marker = number_at(file_, offset_ + 1, 1, ByteOrder::big);
     if (marker == kEnd) return false;
     if (marker == kTemporary || (marker >= kRestart0 && marker <= kRestart7)) {
-      at_ += 2;
+      offset_ += 2;
       return true;
     }
     if (marker == kStart || marker == kStuffed) throw_truncated_image();
-    segment(marker);
+    read_segment(marker);
     return true;
   }
 
-  /// The file without segments that affect no pixel.
+  /// The file with only the segments that affect pixels.
   /// \throws ImageFault if the scans are too short to fill the frame: a block takes at least one
   ///   bit
   Bytes finish() {
     if (frame_.width == 0 || scan_bytes_ == 0) throw_truncated_image();
     const std::uint64_t blocks = std::uint64_t{(frame_.width + 7) / 8} * ((frame_.height + 7) / 8);
     if (blocks > scan_bytes_ * 8) throw_truncated_image();
-    kept_.insert(kept_.end(), {0xFF, kEnd});
-    return std::move(kept_);
+    output_.insert(output_.end(), {0xFF, kEnd});
+    return std::move(output_);
   }
 
   [[nodiscard]] bool lacks_end() const noexcept { return lacks_end_; }
 
  private:
-  /// Some programs omit the end marker. One scan of all channels then has every block, or libjpeg
-  /// reports the first missing one.
-  [[nodiscard]] bool is_whole_without_end() const {
-    return scans_ == 1 && !frame_.progressive && channels_of_scan_ == frame_.channels;
+  /// Some programs omit the end marker. The file is then complete if one scan has all channels;
+  /// libjpeg reports any missing block.
+  [[nodiscard]] bool is_complete_without_end() const {
+    return scans_ == 1 && !frame_.is_progressive && channels_of_scan_ == frame_.channels;
   }
 
-  void segment(std::uint32_t marker) {
-    const std::size_t size = 2 + big16(file_, at_ + 2);
-    const ByteView whole = bytes_at(file_, at_, size);
+  void read_segment(std::uint32_t marker) {
+    const std::size_t size = 2 + big16(file_, offset_ + 2);
+    const ByteView bytes = bytes_at(file_, offset_, size);
     if (size < 4) throw_truncated_image();
     if (is_frame(marker)) {
       if (frame_.width != 0) throw_truncated_image();
-      frame_ = read_frame(marker, whole.subspan(2));
+      frame_ = read_frame(marker, bytes.subspan(2));
     }
-    if (!is_metadata(marker)) copy(at_, size);
-    at_ += size;
+    if (!is_metadata(marker)) copy(offset_, size);
+    offset_ += size;
     if (marker != kScan) return;
-    channels_of_scan_ = number_at(whole, 4, 1, ByteOrder::big);
-    scan_data();
+    channels_of_scan_ = number_at(bytes, 4, 1, ByteOrder::big);
+    read_scan_data();
   }
 
-  void scan_data() {
+  void read_scan_data() {
     if (++scans_ > kMaxScans) {
       throw ImageFault{"is a JPEG of more than " + std::to_string(kMaxScans) + " scans",
                        "export it again"};
     }
-    const std::size_t end = end_of_scan_data(file_, at_);
-    // Refused before it is copied: a huge file may follow.
-    if (end + 1 >= file_.size() && end - at_ > kMaxBytesOfSample * frame_.samples()) {
+    const std::size_t end = end_of_scan_data(file_, offset_);
+    // This is checked before copying, because the data may be huge.
+    if (end + 1 >= file_.size() && end - offset_ > kMaxBytesPerSample * frame_.samples()) {
       throw_truncated_image();
     }
-    copy(at_, end - at_);
-    scan_bytes_ += end - at_;
-    at_ = end;
+    copy(offset_, end - offset_);
+    scan_bytes_ += end - offset_;
+    offset_ = end;
   }
 
-  void copy(std::size_t at, std::size_t size) {
-    const ByteView part = bytes_at(file_, at, size);
-    kept_.insert(kept_.end(), part.begin(), part.end());
+  void copy(std::size_t offset, std::size_t size) {
+    const ByteView part = bytes_at(file_, offset, size);
+    output_.insert(output_.end(), part.begin(), part.end());
   }
 
   ByteView file_;
-  std::size_t at_ = 2;
+  std::size_t offset_ = 2;
   Frame frame_;
   std::uint64_t scan_bytes_ = 0;
   std::uint32_t channels_of_scan_ = 0;  ///< of the last scan
   int scans_ = 0;
   bool lacks_end_ = false;
-  Bytes kept_;
+  Bytes output_;
 };
 
 [[noreturn]] void leave(j_common_ptr jpeg) {
@@ -193,39 +195,39 @@ class Walk {
   static_cast<Escape*>(jpeg->client_data)->leave(text.data());
 }
 
-/// Some cameras pad their files with a few bytes before the end marker. The other harmless messages
-/// concern the file's description of itself.
-bool is_harmless(const jpeg_error_mgr& said) {
+/// Some cameras write a few padding bytes before the end marker. The other harmless messages
+/// concern only the file's declared version and colour transform.
+bool is_harmless(const jpeg_error_mgr& error) {
   constexpr int kMaxPadding = 16;
-  if (said.msg_code == JWRN_ADOBE_XFORM || said.msg_code == JWRN_JFIF_MAJOR) return true;
-  return said.msg_code == JWRN_EXTRANEOUS_DATA && said.msg_parm.i[0] <= kMaxPadding &&
-         said.msg_parm.i[1] == static_cast<int>(kEnd);
+  if (error.msg_code == JWRN_ADOBE_XFORM || error.msg_code == JWRN_JFIF_MAJOR) return true;
+  return error.msg_code == JWRN_EXTRANEOUS_DATA && error.msg_parm.i[0] <= kMaxPadding &&
+         error.msg_parm.i[1] == static_cast<int>(kEnd);
 }
 
-/// Levels below 0 are warnings, after which libjpeg continues with invented samples.
-void weigh_message(j_common_ptr jpeg, int level) {
+/// Levels below 0 are warnings, after which libjpeg would continue with invented samples.
+void handle_message(j_common_ptr jpeg, int level) {
   if (level < 0 && !is_harmless(*jpeg->err)) leave(jpeg);
 }
 
-/// libjpeg on a file in memory.
+/// Decodes a file in memory with libjpeg.
 class JpegDecoder {
  public:
   explicit JpegDecoder(GreyScale& scale) : scale_(scale) {
     jpeg_.err = jpeg_std_error(&errors_);
     jpeg_.client_data = &escape_;
     errors_.error_exit = leave;
-    errors_.emit_message = weigh_message;
+    errors_.emit_message = handle_message;
   }
   ~JpegDecoder() { jpeg_destroy_decompress(&jpeg_); }
   JpegDecoder(const JpegDecoder&) = delete;
   JpegDecoder& operator=(const JpegDecoder&) = delete;
 
   GreyImage read(ByteView file) {
-    require(reaches_end(escape_, [&] { read_start(file); }));
+    require(run_guarded(escape_, [&] { read_start(file); }));
     GreyImage image(static_cast<int>(jpeg_.output_height), static_cast<int>(jpeg_.output_width));
     const int channels = jpeg_.output_components;
     Bytes samples(std::size_t{jpeg_.output_width} * static_cast<std::size_t>(channels));
-    require(reaches_end(escape_, [&] {
+    require(run_guarded(escape_, [&] {
       for (int y = 0; y < image.height(); ++y) {
         JSAMPROW row = samples.data();
         jpeg_read_scanlines(&jpeg_, &row, 1);
@@ -237,10 +239,10 @@ class JpegDecoder {
   }
 
  private:
-  void require(bool done) const {
-    if (done) return;
+  void require(bool is_complete) const {
+    if (is_complete) return;
     if (errors_.msg_code == JERR_OUT_OF_MEMORY) throw std::bad_alloc();
-    throw_damaged_image(escape_.complaint.data());
+    throw_damaged_image(escape_.message.data());
   }
 
   void read_start(ByteView file) {
@@ -261,12 +263,12 @@ class JpegDecoder {
 }  // namespace
 
 GreyImage read_jpeg(ByteView file, GreyScale& scale, ImageNotes& notes) {
-  Walk walk(file);
-  while (walk.step()) {
+  SegmentFilter filter(file);
+  while (filter.step()) {
   }
-  const Bytes kept = walk.finish();
-  notes.lacks_end = walk.lacks_end();
-  return JpegDecoder(scale).read(kept);
+  const Bytes pixel_segments = filter.finish();
+  notes.lacks_end = filter.lacks_end();
+  return JpegDecoder(scale).read(pixel_segments);
 }
 
 }  // namespace touchtrial::engine

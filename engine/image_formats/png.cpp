@@ -22,14 +22,14 @@ constexpr int kMaxChunks = 64;
 struct Chunk {
   std::string_view type;
   ByteView data;
-  ByteView whole;  ///< with length, type and checksum
+  ByteView bytes;  ///< including length, type and checksum
 };
 
-Chunk chunk_at(ByteView file, std::size_t at) {
-  const std::size_t length = big32(file, at);
-  const ByteView whole = bytes_at(file, at, length + kChunkOverhead);
-  const auto* type = reinterpret_cast<const char*>(whole.data() + 4);
-  return {{type, 4}, whole.subspan(8, length), whole};
+Chunk chunk_at(ByteView file, std::size_t offset) {
+  const std::size_t length = big32(file, offset);
+  const ByteView bytes = bytes_at(file, offset, length + kChunkOverhead);
+  const auto* type = reinterpret_cast<const char*>(bytes.data() + 4);
+  return {{type, 4}, bytes.subspan(8, length), bytes};
 }
 
 struct PngHeader {
@@ -69,8 +69,8 @@ PngHeader read_png_header(ByteView file) {
   return header;
 }
 
-/// Refuses too little data before it is unpacked: deflate never packs better than 1032 to 1.
-void check_amount(const PngHeader& header, std::uint64_t packed_bytes) {
+/// Refuses too little data before decompression: deflate compresses at most 1032 to 1.
+void check_packed_size(const PngHeader& header, std::uint64_t packed_bytes) {
   constexpr std::array<std::uint64_t, 7> kChannels = {1, 0, 3, 1, 2, 0, 4};
   const std::uint64_t row_bits = kChannels.at(static_cast<std::size_t>(header.colour)) *
                                  static_cast<std::uint64_t>(header.depth) * header.width;
@@ -78,7 +78,7 @@ void check_amount(const PngHeader& header, std::uint64_t packed_bytes) {
   if (packed_bytes == 0 || unpacked_bytes > packed_bytes * 1032 + 1024) throw_truncated_image();
 }
 
-bool decides_pixels(std::string_view type) {
+bool affects_pixels(std::string_view type) {
   return type == "IHDR" || type == "PLTE" || type == "tRNS" || type == "IDAT" || type == "IEND";
 }
 
@@ -86,67 +86,68 @@ bool is_critical(std::string_view type) {
   return (type[0] & 0x20) == 0;
 }
 
-/// The file without colour profiles, gamma, texts and notes. libpng sees only this.
+/// The file without colour profiles, gamma and text, for libpng.
 Bytes pixel_chunks(ByteView file) {
   const PngHeader header = read_png_header(file);
-  Bytes kept(file.begin(), file.begin() + kSignatureSize);
+  Bytes chunks(file.begin(), file.begin() + kSignatureSize);
   std::uint64_t packed_bytes = 0;
-  for (std::size_t at = kSignatureSize;;) {
-    const Chunk chunk = chunk_at(file, at);
-    at += chunk.whole.size();
-    if (decides_pixels(chunk.type)) {
+  for (std::size_t offset = kSignatureSize;;) {
+    const Chunk chunk = chunk_at(file, offset);
+    offset += chunk.bytes.size();
+    if (affects_pixels(chunk.type)) {
       if (chunk.type == "IDAT") packed_bytes += chunk.data.size();
-      kept.insert(kept.end(), chunk.whole.begin(), chunk.whole.end());
+      chunks.insert(chunks.end(), chunk.bytes.begin(), chunk.bytes.end());
     } else if (is_critical(chunk.type)) {
       throw_unsupported_image("is a PNG with an unknown critical chunk");
     }
     if (chunk.type == "IEND") break;
   }
-  check_amount(header, packed_bytes);
-  return kept;
+  check_packed_size(header, packed_bytes);
+  return chunks;
 }
 
 [[noreturn]] void leave(png_structp png, png_const_charp what) {
   static_cast<Escape*>(png_get_error_ptr(png))->leave(what);
 }
 
-void stay_silent(png_structp /*png*/, png_const_charp /*warning*/) {}
+void ignore_warning(png_structp /*png*/, png_const_charp /*warning*/) {}
 
-void take_bytes(png_structp png, png_bytep to, std::size_t count) {
-  auto& left = *static_cast<ByteView*>(png_get_io_ptr(png));
-  if (count > left.size()) png_error(png, "ends too early");
-  std::memcpy(to, left.data(), count);
-  left = left.subspan(count);
+void read_bytes(png_structp png, png_bytep target, std::size_t count) {
+  auto& remaining = *static_cast<ByteView*>(png_get_io_ptr(png));
+  if (count > remaining.size()) png_error(png, "ends too early");
+  std::memcpy(target, remaining.data(), count);
+  remaining = remaining.subspan(count);
 }
 
-/// libpng on a file in memory: rows of 8- or 16-bit grey, grey alpha, RGB or RGBA samples.
+/// Decodes a file in memory with libpng to rows of 8- or 16-bit grey, grey alpha, RGB or RGBA
+/// samples.
 class PngDecoder {
  public:
-  PngDecoder(ByteView file, GreyScale& scale) : left_(file), scale_(scale) {}
+  PngDecoder(ByteView file, GreyScale& scale) : remaining_(file), scale_(scale) {}
   ~PngDecoder() { png_destroy_read_struct(&png_, &info_, nullptr); }
   PngDecoder(const PngDecoder&) = delete;
   PngDecoder& operator=(const PngDecoder&) = delete;
 
   GreyImage read() {
-    require(reaches_end(escape_, [&] { read_start(); }));
-    return png_get_bit_depth(png_, info_) == 16 ? rows<png_uint_16>() : rows<png_byte>();
+    require(run_guarded(escape_, [&] { read_start(); }));
+    return png_get_bit_depth(png_, info_) == 16 ? read_rows<png_uint_16>() : read_rows<png_byte>();
   }
 
  private:
-  void require(bool done) const {
-    if (!done) throw_damaged_image(escape_.complaint.data());
+  void require(bool is_complete) const {
+    if (!is_complete) throw_damaged_image(escape_.message.data());
   }
 
   void read_start() {
-    png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &escape_, leave, stay_silent);
+    png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &escape_, leave, ignore_warning);
     info_ = png_ == nullptr ? nullptr : png_create_info_struct(png_);
-    if (info_ == nullptr) escape_.leave("libpng has no memory or another version");
+    if (info_ == nullptr) escape_.leave("libpng is out of memory or has another version");
     png_set_user_limits(png_, kMaxSidePx, kMaxSidePx);
     png_set_chunk_malloc_max(png_, kMaxChunk);
     png_set_chunk_cache_max(png_, kMaxChunks);
-    // The only ancillary chunk left, tRNS, affects pixels as well.
+    // The only ancillary chunk, tRNS, affects pixels as well.
     png_set_crc_action(png_, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
-    png_set_read_fn(png_, &left_, take_bytes);
+    png_set_read_fn(png_, &remaining_, read_bytes);
     png_read_info(png_, info_);
     png_set_expand(png_);
     if (std::endian::native == std::endian::little) png_set_swap(png_);
@@ -154,9 +155,9 @@ class PngDecoder {
     png_read_update_info(png_, info_);
   }
 
-  /// Reads row by row. Keeps all rows only if several passes fill them.
+  /// Reads row by row. Stores all rows only if several passes fill them.
   template <typename Sample>
-  GreyImage rows() {
+  GreyImage read_rows() {
     const int height = static_cast<int>(png_get_image_height(png_, info_));
     const int channels = png_get_channels(png_, info_);
     const std::size_t row_size = png_get_rowbytes(png_, info_) / sizeof(Sample);
@@ -166,7 +167,7 @@ class PngDecoder {
     const auto row_of = [&](int y) {
       return samples.data() + (passes_ == 1 ? 0 : row_size * static_cast<std::size_t>(y));
     };
-    require(reaches_end(escape_, [&] {
+    require(run_guarded(escape_, [&] {
       for (int pass = 1; pass <= passes_; ++pass) {
         for (int y = 0; y < height; ++y) {
           png_read_row(png_, reinterpret_cast<png_bytep>(row_of(y)), nullptr);
@@ -181,22 +182,22 @@ class PngDecoder {
   }
 
   Escape escape_;
-  ByteView left_;
+  ByteView remaining_;
   GreyScale& scale_;
   png_structp png_ = nullptr;
   png_infop info_ = nullptr;
   int passes_ = 1;
 };
 
-void give_bytes(png_structp png, png_bytep from, std::size_t count) {
+void append_bytes(png_structp png, png_bytep source, std::size_t count) {
   bool fits = true;
   try {
     auto& file = *static_cast<Bytes*>(png_get_io_ptr(png));
-    file.insert(file.end(), from, from + count);
+    file.insert(file.end(), source, source + count);
   } catch (const std::exception&) {
     fits = false;
   }
-  if (!fits) png_error(png, "no memory is left");
+  if (!fits) png_error(png, "out of memory");
 }
 
 void no_flush(png_structp /*png*/) {}
@@ -209,8 +210,8 @@ std::pair<int, int> size_of_png(ByteView file) {
 }
 
 GreyImage read_png(ByteView file, GreyScale& scale) {
-  const Bytes kept = pixel_chunks(file);
-  return PngDecoder(kept, scale).read();
+  const Bytes chunks = pixel_chunks(file);
+  return PngDecoder(chunks, scale).read();
 }
 
 Bytes png_of_samples(int height, int width, int channels, std::span<const std::uint8_t> samples) {
@@ -218,12 +219,12 @@ Bytes png_of_samples(int height, int width, int channels, std::span<const std::u
   Escape escape;
   png_structp png = nullptr;
   png_infop info = nullptr;
-  const bool done = reaches_end(escape, [&] {
-    png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &escape, leave, stay_silent);
+  const bool is_complete = run_guarded(escape, [&] {
+    png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &escape, leave, ignore_warning);
     info = png == nullptr ? nullptr : png_create_info_struct(png);
-    if (info == nullptr) escape.leave("libpng has no memory or another version");
-    png_set_write_fn(png, &file, give_bytes, no_flush);
-    // Filtered rows and zlib's best compression, because textures compress poorly.
+    if (info == nullptr) escape.leave("libpng is out of memory or has another version");
+    png_set_write_fn(png, &file, append_bytes, no_flush);
+    // Textures compress poorly without filtered rows and zlib's best compression.
     png_set_compression_level(png, Z_BEST_COMPRESSION);
     png_set_compression_strategy(png, Z_FILTERED);
     png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,
@@ -232,13 +233,13 @@ Bytes png_of_samples(int height, int width, int channels, std::span<const std::u
     png_write_info(png, info);
     const std::size_t row_size =
         static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
-    for (std::size_t at = 0; at < samples.size(); at += row_size) {
-      png_write_row(png, samples.data() + at);
+    for (std::size_t offset = 0; offset < samples.size(); offset += row_size) {
+      png_write_row(png, samples.data() + offset);
     }
     png_write_end(png, info);
   });
   png_destroy_write_struct(&png, &info);
-  if (!done) throw_damaged_image(escape.complaint.data());
+  if (!is_complete) throw_damaged_image(escape.message.data());
   return file;
 }
 

@@ -20,7 +20,7 @@
 namespace touchtrial::engine {
 namespace {
 
-/// How the samples of the picture are stored.
+/// The storage of a picture's samples.
 struct Layout {
   std::uint32_t width;
   std::uint32_t height;
@@ -28,20 +28,20 @@ struct Layout {
   std::uint32_t channels;
   std::uint32_t compression;
   std::uint32_t photometric;
-  bool separate;
-  bool heights;  ///< floating-point samples
+  bool is_planar;
+  bool has_heights;  ///< floating-point samples
 };
 
 /// Whether every channel has the value of the first one, or the entry is absent.
-bool is_uniform(const TiffDirectory& directory, TiffTag tag, std::uint32_t otherwise) {
-  const std::vector<std::uint32_t> all = directory.values(tag);
-  const std::uint32_t first = directory.value(tag, otherwise);
-  return std::all_of(all.begin(), all.end(), [&](std::uint32_t v) { return v == first; });
+bool is_uniform(const TiffDirectory& directory, TiffTag tag, std::uint32_t default_value) {
+  const std::vector<std::uint32_t> values = directory.values(tag);
+  const std::uint32_t first = directory.value(tag, default_value);
+  return std::all_of(values.begin(), values.end(), [&](std::uint32_t v) { return v == first; });
 }
 
 Layout read_layout(const TiffDirectory& directory) {
-  const auto get = [&](TiffTag tag, std::uint32_t otherwise) {
-    return directory.value(tag, otherwise);
+  const auto get = [&](TiffTag tag, std::uint32_t default_value) {
+    return directory.value(tag, default_value);
   };
   const Layout layout{
       get(TiffTag::width, 0),
@@ -56,12 +56,12 @@ Layout read_layout(const TiffDirectory& directory) {
   return layout;
 }
 
-bool channels_fit(const Layout& layout) {
+bool has_supported_channels(const Layout& layout) {
   switch (layout.photometric) {
     case PHOTOMETRIC_MINISWHITE:
     case PHOTOMETRIC_MINISBLACK:
       return layout.channels == 1 || (layout.channels == 2 && layout.bits >= 8 &&
-                                      !layout.separate && layout.compression != COMPRESSION_JPEG);
+                                      !layout.is_planar && layout.compression != COMPRESSION_JPEG);
     case PHOTOMETRIC_RGB:
       return (layout.channels == 3 || layout.channels == 4) && layout.bits >= 8;
     case PHOTOMETRIC_PALETTE:
@@ -73,7 +73,7 @@ bool channels_fit(const Layout& layout) {
   }
 }
 
-bool compression_fits(const Layout& layout) {
+bool has_supported_compression(const Layout& layout) {
   switch (layout.compression) {
     case COMPRESSION_NONE:
     case COMPRESSION_LZW:
@@ -94,15 +94,15 @@ bool compression_fits(const Layout& layout) {
 
 void check_samples(const TiffDirectory& directory, const Layout& layout) {
   const std::uint32_t format = directory.value(TiffTag::sample_format, SAMPLEFORMAT_UINT);
-  const bool is_known = layout.heights
-                            ? (layout.bits == 32 || layout.bits == 64) && layout.channels == 1
-                            : format == SAMPLEFORMAT_UINT &&
-                                  (layout.bits == 1 || layout.bits == 8 || layout.bits == 16);
-  if (!is_known || !is_uniform(directory, TiffTag::sample_format, format) ||
+  const bool is_supported = layout.has_heights
+                                ? (layout.bits == 32 || layout.bits == 64) && layout.channels == 1
+                                : format == SAMPLEFORMAT_UINT &&
+                                      (layout.bits == 1 || layout.bits == 8 || layout.bits == 16);
+  if (!is_supported || !is_uniform(directory, TiffTag::sample_format, format) ||
       !is_uniform(directory, TiffTag::bits_per_sample, 1)) {
     throw_unsupported_image("is a TIFF of " + std::to_string(layout.channels) + " x " +
                             std::to_string(layout.bits) + "-bit " +
-                            (layout.heights                ? "floating-point "
+                            (layout.has_heights            ? "floating-point "
                              : format == SAMPLEFORMAT_UINT ? ""
                                                            : "signed ") +
                             "samples, which is not supported");
@@ -110,23 +110,23 @@ void check_samples(const TiffDirectory& directory, const Layout& layout) {
   if (!directory.has(TiffTag::photometric)) {
     throw_unsupported_image("is a TIFF without a photometric interpretation");
   }
-  if (!channels_fit(layout) || (layout.separate && layout.bits != 8)) {
+  if (!has_supported_channels(layout) || (layout.is_planar && layout.bits != 8)) {
     throw_unsupported_image("is a TIFF with an arrangement of channels (" +
                             std::to_string(layout.channels) + ", photometric " +
                             std::to_string(layout.photometric) + ") that is not supported");
   }
-  if (!compression_fits(layout)) {
+  if (!has_supported_compression(layout)) {
     throw_unsupported_image("is a TIFF of compression " + std::to_string(layout.compression) +
                             ", which is not supported");
   }
 }
 
-/// The strips or tiles of the picture. A strip is as wide as the picture.
+/// The strips or tiles of a picture. A strip has the full width.
 struct Pieces {
   std::uint64_t width = 0;
   std::uint64_t height = 0;
   std::uint64_t count = 0;
-  bool tiled = false;
+  bool is_tiled = false;
   std::vector<std::uint32_t> offsets;
   std::vector<std::uint32_t> sizes;
 };
@@ -138,8 +138,8 @@ std::uint64_t ceil_divide(std::uint64_t a, std::uint64_t b) {
 Pieces read_pieces(const TiffDirectory& directory, const Layout& layout) {
   constexpr std::uint64_t kMaxTilePixels = std::uint64_t{1} << 26U;
   Pieces pieces;
-  pieces.tiled = directory.has(TiffTag::tile_width);
-  if (pieces.tiled) {
+  pieces.is_tiled = directory.has(TiffTag::tile_width);
+  if (pieces.is_tiled) {
     pieces.width = directory.value(TiffTag::tile_width, 0);
     pieces.height = directory.value(TiffTag::tile_height, 0);
     pieces.offsets = directory.values(TiffTag::tile_offsets);
@@ -154,20 +154,21 @@ Pieces read_pieces(const TiffDirectory& directory, const Layout& layout) {
   }
   if (pieces.width == 0 || pieces.height == 0) throw_truncated_image();
   pieces.count = ceil_divide(layout.height, pieces.height) *
-                 ceil_divide(layout.width, pieces.width) * (layout.separate ? layout.channels : 1);
+                 ceil_divide(layout.width, pieces.width) * (layout.is_planar ? layout.channels : 1);
   return pieces;
 }
 
 /// The unpacked size of one piece in bytes. The last strip may be shorter than the others.
 std::uint64_t unpacked_size(const Layout& layout, const Pieces& pieces, std::uint64_t row_index) {
-  const std::uint64_t rows_left = layout.height - row_index * pieces.height;
-  const std::uint64_t rows = pieces.tiled ? pieces.height : std::min(pieces.height, rows_left);
-  const std::uint64_t channels = layout.separate ? 1 : layout.channels;
+  const std::uint64_t remaining_rows = layout.height - row_index * pieces.height;
+  const std::uint64_t rows =
+      pieces.is_tiled ? pieces.height : std::min(pieces.height, remaining_rows);
+  const std::uint64_t channels = layout.is_planar ? 1 : layout.channels;
   return ceil_divide(pieces.width * channels * layout.bits, 8) * rows;
 }
 
-/// A generous limit of how many bytes one byte of a file may unpack to; 0 if there is no limit.
-std::uint64_t packing_limit(const Layout& layout) {
+/// An upper bound of the unpacked bytes per stored byte; 0: no bound.
+std::uint64_t max_expansion(const Layout& layout) {
   if (layout.photometric == PHOTOMETRIC_YCBCR || layout.compression == COMPRESSION_JPEG) return 0;
   if (layout.compression == COMPRESSION_NONE) return 1;
   return layout.bits == 1 ? 0 : 4096;
@@ -179,16 +180,16 @@ void check_pieces(ByteView file, const Layout& layout, const Pieces& pieces) {
   if (pieces.offsets.size() < pieces.count || pieces.sizes.size() < pieces.count) {
     throw_truncated_image();
   }
-  const std::uint64_t limit = packing_limit(layout);
+  const std::uint64_t limit = max_expansion(layout);
   for (std::size_t i = 0; i < pieces.count; ++i) {
     const ByteView piece = bytes_at(file, pieces.offsets[i], pieces.sizes[i]);
-    const std::uint64_t needed = unpacked_size(layout, pieces, i / columns % rows);
-    if (piece.empty() || (limit != 0 && needed > limit * piece.size())) throw_truncated_image();
+    const std::uint64_t min_size = unpacked_size(layout, pieces, i / columns % rows);
+    if (piece.empty() || (limit != 0 && min_size > limit * piece.size())) throw_truncated_image();
   }
 }
 
 /// A fourth channel that the file does not describe is alpha by common usage.
-Alpha alpha_rule(const TiffDirectory& directory) {
+Alpha alpha_of(const TiffDirectory& directory) {
   switch (directory.value(TiffTag::extra_samples, EXTRASAMPLE_UNASSALPHA)) {
     case EXTRASAMPLE_UNASSALPHA:
       return Alpha::straight;
@@ -199,32 +200,32 @@ Alpha alpha_rule(const TiffDirectory& directory) {
   }
 }
 
-/// libtiff ignores entries that it finds wrong, and assumes their usual values. That must not
-/// happen to the entries that describe the samples.
+/// libtiff ignores invalid entries and assumes defaults. For entries that describe the samples,
+/// this must be an error.
 /// \throws ImageFault if libtiff and the directory differ
-void require_same_view(TIFF* tiff, const TiffDirectory& directory, const Layout& layout) {
-  const bool is_predicted = layout.compression == COMPRESSION_LZW ||
-                            layout.compression == COMPRESSION_DEFLATE ||
-                            layout.compression == COMPRESSION_ADOBE_DEFLATE;
+void require_agreement(TIFF* tiff, const TiffDirectory& directory, const Layout& layout) {
+  const bool supports_predictor = layout.compression == COMPRESSION_LZW ||
+                                  layout.compression == COMPRESSION_DEFLATE ||
+                                  layout.compression == COMPRESSION_ADOBE_DEFLATE;
   for (const TiffTag tag :
        {TiffTag::bits_per_sample, TiffTag::compression, TiffTag::photometric, TiffTag::fill_order,
         TiffTag::samples_per_pixel, TiffTag::planar, TiffTag::predictor, TiffTag::sample_format}) {
-    if (!directory.has(tag) || (tag == TiffTag::predictor && !is_predicted)) continue;
+    if (!directory.has(tag) || (tag == TiffTag::predictor && !supports_predictor)) continue;
     std::uint16_t value = 0;
-    const bool is_known = TIFFGetField(tiff, static_cast<std::uint32_t>(tag), &value) == 1;
-    if (!is_known || value != directory.value(tag, 0)) throw_truncated_image();
+    const bool has_value = TIFFGetField(tiff, static_cast<std::uint32_t>(tag), &value) == 1;
+    if (!has_value || value != directory.value(tag, 0)) throw_truncated_image();
   }
 }
 
 /// A file in memory, and libtiff's first message about it.
 struct Source {
   ByteView file;
-  std::size_t at = 0;
-  bool decoding = false;  ///< false while the file is being opened
-  std::array<char, 200> complaint{};
+  std::size_t offset = 0;
+  bool is_decoding = false;  ///< false while the file is opened
+  std::array<char, 200> message{};
 
-  void require(bool done) const {
-    if (!done || complaint[0] != 0) throw_damaged_image(complaint.data());
+  void require(bool is_complete) const {
+    if (!is_complete || message[0] != 0) throw_damaged_image(message.data());
   }
 };
 
@@ -232,27 +233,27 @@ Source& source_of(void* handle) {
   return *static_cast<Source*>(handle);
 }
 
-tmsize_t take_bytes(thandle_t handle, void* to, tmsize_t count) {
+tmsize_t read_bytes(thandle_t handle, void* buffer, tmsize_t count) {
   Source& source = source_of(handle);
-  const std::size_t left = source.file.size() - std::min(source.at, source.file.size());
-  const std::size_t taken = std::min(left, static_cast<std::size_t>(count));
-  if (taken > 0) std::memcpy(to, source.file.data() + source.at, taken);
-  source.at += taken;
-  return static_cast<tmsize_t>(taken);
+  const std::size_t remaining = source.file.size() - std::min(source.offset, source.file.size());
+  const std::size_t size = std::min(remaining, static_cast<std::size_t>(count));
+  if (size > 0) std::memcpy(buffer, source.file.data() + source.offset, size);
+  source.offset += size;
+  return static_cast<tmsize_t>(size);
 }
 
 tmsize_t refuse_write(thandle_t /*handle*/, void* /*from*/, tmsize_t /*count*/) {
   return 0;
 }
 
-toff_t move_to(thandle_t handle, toff_t offset, int from) {
+toff_t seek(thandle_t handle, toff_t offset, int origin) {
   Source& source = source_of(handle);
-  if (from == SEEK_CUR) offset += source.at;
-  if (from == SEEK_END) offset += source.file.size();
-  return source.at = offset;
+  if (origin == SEEK_CUR) offset += source.offset;
+  if (origin == SEEK_END) offset += source.file.size();
+  return source.offset = offset;
 }
 
-int leave_open(thandle_t /*handle*/) {
+int ignore_close(thandle_t /*handle*/) {
   return 0;
 }
 
@@ -260,7 +261,7 @@ toff_t size_of_file(thandle_t handle) {
   return source_of(handle).file.size();
 }
 
-/// Lets libtiff read the samples in place. (It refuses uncompressed tiles that it has to copy.)
+/// Lets libtiff read samples in place, because it refuses uncompressed tiles that it must copy.
 int map_file(thandle_t handle, void** start, toff_t* size) {
   const ByteView file = source_of(handle).file;
   *start = const_cast<std::uint8_t*>(file.data());
@@ -268,62 +269,63 @@ int map_file(thandle_t handle, void** start, toff_t* size) {
   return 1;
 }
 
-void leave_mapped(thandle_t /*handle*/, void* /*start*/, toff_t /*size*/) {}
+void ignore_unmap(thandle_t /*handle*/, void* /*start*/, toff_t /*size*/) {}
 
 constexpr int kHandled = 1;
 
 /// Stores the first message.
-[[gnu::format(printf, 4, 0)]] int keep_error(TIFF* /*tiff*/, void* handle, const char* module,
-                                             const char* format, va_list values) {
-  auto& complaint = source_of(handle).complaint;
-  if (complaint[0] != 0) return kHandled;
-  const int used = std::snprintf(complaint.data(), complaint.size(),
-                                 "%s: ", module != nullptr ? module : "libtiff");
-  const auto start = std::min(static_cast<std::size_t>(std::max(used, 0)), complaint.size());
-  std::vsnprintf(complaint.data() + start, complaint.size() - start, format, values);
+[[gnu::format(printf, 4, 0)]] int store_error(TIFF* /*tiff*/, void* handle, const char* module,
+                                              const char* format, va_list values) {
+  auto& message = source_of(handle).message;
+  if (message[0] != 0) return kHandled;
+  const int prefix_length =
+      std::snprintf(message.data(), message.size(), "%s: ", module != nullptr ? module : "libtiff");
+  const auto start = std::min(static_cast<std::size_t>(std::max(prefix_length, 0)), message.size());
+  std::vsnprintf(message.data() + start, message.size() - start, format, values);
   return kHandled;
 }
 
-/// While a file is opened, warnings concern entries that affect no pixel, or that are checked here.
-/// Later warnings mean that libtiff invented samples, except for the one about an old kind of LZW,
-/// which it reads correctly.
-[[gnu::format(printf, 4, 0)]] int weigh_warning(TIFF* tiff, void* handle, const char* module,
-                                                const char* format, va_list values) {
+/// Warnings on opening a file concern entries that affect no pixel or are checked here. Later
+/// warnings mean that libtiff invented samples, except the one about old LZW, which it reads
+/// correctly.
+[[gnu::format(printf, 4, 0)]] int handle_warning(TIFF* tiff, void* handle, const char* module,
+                                                 const char* format, va_list values) {
   const bool is_about_old_lzw = module != nullptr && std::string_view(module) == "LZWPreDecode";
-  if (!source_of(handle).decoding || is_about_old_lzw) return kHandled;
-  return keep_error(tiff, handle, module, format, values);
+  if (!source_of(handle).is_decoding || is_about_old_lzw) return kHandled;
+  return store_error(tiff, handle, module, format, values);
 }
 
 using TiffFile = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
 
-/// \param directory  where it starts in the file
-TiffFile opened(Source& source, std::size_t directory) {
+/// \param directory  offset of the directory in the file
+TiffFile open_tiff(Source& source, std::size_t directory) {
   // A picture takes at most eight bytes per pixel.
   constexpr tmsize_t kMaxBlock = 8 * kMaxImagePixels + (1 << 20U);
   const std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(
       TIFFOpenOptionsAlloc(), TIFFOpenOptionsFree);
   if (!options) throw std::bad_alloc();
   TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), kMaxBlock);
-  TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_error, &source);
-  TIFFOpenOptionsSetWarningHandlerExtR(options.get(), weigh_warning, &source);
-  TiffFile tiff(TIFFClientOpenExt("picture", "rch", &source, take_bytes, refuse_write, move_to,
-                                  leave_open, size_of_file, map_file, leave_mapped, options.get()),
-                TIFFClose);
+  TIFFOpenOptionsSetErrorHandlerExtR(options.get(), store_error, &source);
+  TIFFOpenOptionsSetWarningHandlerExtR(options.get(), handle_warning, &source);
+  TiffFile tiff(
+      TIFFClientOpenExt("picture", "rch", &source, read_bytes, refuse_write, seek, ignore_close,
+                        size_of_file, map_file, ignore_unmap, options.get()),
+      TIFFClose);
   if (!tiff || TIFFSetSubDirectory(tiff.get(), directory) == 0) {
-    throw_damaged_image(source.complaint.data());
+    throw_damaged_image(source.message.data());
   }
-  source.complaint.fill(0);
-  source.decoding = true;
+  source.message.fill(0);
+  source.is_decoding = true;
   return tiff;
 }
 
 /// libtiff's conversion of a picture to 8-bit RGBA.
 struct Rgba : TIFFRGBAImage {
   explicit Rgba(TIFF* tiff) : TIFFRGBAImage() {
-    std::array<char, 1024> why{};
-    if (TIFFRGBAImageOK(tiff, why.data()) == 0 ||
-        TIFFRGBAImageBegin(this, tiff, 1, why.data()) == 0) {
-      throw_damaged_image(why.data());
+    std::array<char, 1024> error{};
+    if (TIFFRGBAImageOK(tiff, error.data()) == 0 ||
+        TIFFRGBAImageBegin(this, tiff, 1, error.data()) == 0) {
+      throw_damaged_image(error.data());
     }
     orientation = req_orientation = ORIENTATION_TOPLEFT;
   }
@@ -332,9 +334,8 @@ struct Rgba : TIFFRGBAImage {
   Rgba& operator=(const Rgba&) = delete;
 };
 
-/// Reads colour, palettes and bilevel samples, whose many arrangements libtiff converts to 8-bit
-/// RGBA. If the file declares straight alpha, libtiff multiplies the colours by it and rounds as we
-/// do.
+/// Reads colour, palettes and bilevel samples, which libtiff converts to 8-bit RGBA. If the file
+/// declares straight alpha, libtiff premultiplies the colours and rounds like composite_on_black().
 GreyImage read_as_rgba(TIFF* tiff, const Source& source, const Layout& layout,
                        std::uint64_t piece_height, Alpha alpha, GreyScale& scale) {
   Rgba rgba(tiff);
@@ -360,10 +361,10 @@ GreyImage read_as_rgba(TIFF* tiff, const Source& source, const Layout& layout,
 }
 
 /// Reads the rows of strips or tiles with interleaved channels.
-/// \param take  called with the samples of each row of a piece, and the place of the first: y, x
-template <typename Sample, typename Take>
+/// \param visit  called as visit(samples, y, x) for each row of a piece; y and x of its first pixel
+template <typename Sample, typename Visit>
 void read_rows(TIFF* tiff, const Source& source, const Layout& layout, const Pieces& pieces,
-               const Take& take) {
+               const Visit& visit) {
   const std::size_t row_size = pieces.width * layout.channels;
   std::vector<Sample> piece(row_size * pieces.height);
   const std::uint64_t columns = ceil_divide(layout.width, pieces.width);
@@ -371,33 +372,33 @@ void read_rows(TIFF* tiff, const Source& source, const Layout& layout, const Pie
     const std::uint64_t top = i / columns * pieces.height;
     const std::uint64_t left = i % columns * pieces.width;
     const auto size = static_cast<tmsize_t>(unpacked_size(layout, pieces, i / columns));
-    source.require(size == (pieces.tiled ? TIFFReadEncodedTile(tiff, i, piece.data(), size)
-                                         : TIFFReadEncodedStrip(tiff, i, piece.data(), size)));
+    source.require(size == (pieces.is_tiled ? TIFFReadEncodedTile(tiff, i, piece.data(), size)
+                                            : TIFFReadEncodedStrip(tiff, i, piece.data(), size)));
     const std::uint64_t rows = std::min(pieces.height, layout.height - top);
     const std::uint64_t width = std::min(pieces.width, layout.width - left);
     for (std::uint64_t y = 0; y < rows; ++y) {
-      take(std::span(piece).subspan(y * row_size, width * layout.channels),
-           static_cast<int>(top + y), static_cast<int>(left));
+      visit(std::span(piece).subspan(y * row_size, width * layout.channels),
+            static_cast<int>(top + y), static_cast<int>(left));
     }
   }
 }
 
-/// Reads 16-bit samples, and 8-bit grey with alpha. libtiff's conversion would lose their
-/// precision, or their alpha.
+/// Reads 16-bit samples and 8-bit grey with alpha, because libtiff's conversion would lose
+/// precision or alpha.
 template <typename Sample>
 GreyImage read_samples(TIFF* tiff, const Source& source, const Layout& layout, const Pieces& pieces,
                        Alpha alpha, GreyScale& scale) {
   GreyImage image(static_cast<int>(layout.height), static_cast<int>(layout.width));
-  WideSamples stored;  // where white is 0
+  WideSamples stored_samples;  // before inversion
   read_rows<Sample>(tiff, source, layout, pieces, [&](std::span<Sample> row, int y, int x) {
     if (layout.photometric == PHOTOMETRIC_MINISWHITE) {
-      // Before alpha is composited: the inversion concerns the colour only.
+      // Inverts the colour before alpha is composited, because alpha is not inverted.
       const auto white = static_cast<Sample>(sizeof(Sample) == 2 && scale.bits() != 0
                                                  ? (1U << static_cast<unsigned>(scale.bits())) - 1U
                                                  : ~0U);
-      for (std::size_t at = 0; at < row.size(); at += layout.channels) {
-        stored.add(row[at]);
-        row[at] = static_cast<Sample>(white - std::min(row[at], white));
+      for (std::size_t i = 0; i < row.size(); i += layout.channels) {
+        stored_samples.add(row[i]);
+        row[i] = static_cast<Sample>(white - std::min(row[i], white));
       }
     }
     scale.make_grey(
@@ -405,12 +406,12 @@ GreyImage read_samples(TIFF* tiff, const Source& source, const Layout& layout, c
         image.row(y).subspan(static_cast<std::size_t>(x), row.size() / layout.channels));
   });
   if (sizeof(Sample) == 2 && layout.photometric == PHOTOMETRIC_MINISWHITE) {
-    scale.set_wide(stored);
+    scale.set_wide_samples(stored_samples);
   }
   return image;
 }
 
-/// Refuses heights that mark missing values: NaN, infinite, implausibly large, or the file's own
+/// Refuses markers of missing heights: NaN, infinite or implausibly large values, and the file's
 /// no-data value, which programs write with six digits or more.
 template <typename Real>
 void refuse_gaps(std::span<const Real> heights, std::optional<double> gap) {
@@ -422,12 +423,12 @@ void refuse_gaps(std::span<const Real> heights, std::optional<double> gap) {
   const auto first = std::ranges::find_if(heights, is_gap);
   if (first == heights.end()) return;
   throw ImageFault{"has " + counted(std::ranges::count_if(heights, is_gap), "gap") + ", with " +
-                       rounded(static_cast<double>(*first)) + " in place of a height",
-                   "fill the gaps of the scan, or crop it to where there are none, and export it "
+                       rounded(static_cast<double>(*first)) + " instead of a height",
+                   "fill the gaps of the scan, or crop it to a part without gaps, and export it "
                    "again"};
 }
 
-/// Reads heights, and makes grey levels of the range that is given, or of their own.
+/// Reads heights and scales the user's range, or else the picture's range, to grey levels.
 /// \param gap  the no-data value
 template <typename Real>
 GreyImage read_heights(TIFF* tiff, const Source& source, const Layout& layout, const Pieces& pieces,
@@ -443,7 +444,7 @@ GreyImage read_heights(TIFF* tiff, const Source& source, const Layout& layout, c
   const auto range = scale.heights().value_or(*notes.heights);
   const double low = range.first;
   const double high = range.second;
-  notes.has_given_heights = scale.heights().has_value();
+  notes.has_user_range = scale.heights().has_value();
   notes.cut_share = static_cast<double>(std::ranges::count_if(
                         heights.samples(), [&](Real h) { return h < low || h > high; })) /
                     static_cast<double>(heights.size());
@@ -468,10 +469,10 @@ GreyImage read_tiff(ByteView file, GreyScale& scale, ImageNotes& notes) {
   const Pieces pieces = read_pieces(directory, layout);
   check_pieces(file, layout, pieces);
   Source source{.file = file};
-  const TiffFile tiff = opened(source, pictures.first);
-  require_same_view(tiff.get(), directory, layout);
-  const Alpha alpha = alpha_rule(directory);
-  if (layout.heights) {
+  const TiffFile tiff = open_tiff(source, pictures.first);
+  require_agreement(tiff.get(), directory, layout);
+  const Alpha alpha = alpha_of(directory);
+  if (layout.has_heights) {
     const auto gap = number_in<double>(directory.text(TiffTag::gdal_no_data));
     return layout.bits == 32
                ? read_heights<float>(tiff.get(), source, layout, pieces, gap, scale, notes)

@@ -10,7 +10,7 @@ constexpr std::uint32_t kAscii = 2;
 constexpr std::uint32_t kLong = 4;
 constexpr std::uint32_t kRational = 5;
 
-/// Bytes of one value; 0 for types that no supported entry has.
+/// Bytes of one value; 0 for unsupported types.
 std::size_t size_of_type(std::uint32_t type) {
   switch (type) {
     case 1:
@@ -26,17 +26,17 @@ std::size_t size_of_type(std::uint32_t type) {
 
 }  // namespace
 
-TiffDirectory::TiffDirectory(ByteView file, std::size_t at)
+TiffDirectory::TiffDirectory(ByteView file, std::size_t offset)
     : file_(file),
       order_(bytes_at(file, 0, 2)[0] == std::uint8_t{'M'} ? ByteOrder::big : ByteOrder::little),
-      start_(at == 0 ? number_at(file, 4, 4, order_) : at) {
+      start_(offset == 0 ? number_at(file, 4, 4, order_) : offset) {
   const std::size_t count = number_at(file, start_, 2, order_);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t entry = start_ + 2 + i * kEntrySize;
     const auto tag =
         static_cast<TiffTag>(number_at(bytes_at(file, entry, kEntrySize), 0, 2, order_));
     const bool is_new = entries_.emplace(tag, entry).second;
-    // Readers differ in which of two entries they use, so such a file is ambiguous.
+    // Readers differ in which duplicate they use, so such a file is ambiguous.
     if (!is_new) throw_truncated_image();
   }
   next_ = number_at(file, start_ + 2 + count * kEntrySize, 4, order_);
@@ -49,18 +49,20 @@ bool TiffDirectory::is_reduced() const {
          value(TiffTag::subfile_type, 0) == kOldReduced;
 }
 
-ByteView TiffDirectory::data(std::size_t at, std::size_t size) const {
-  const std::size_t count = number_at(file_, at + 4, 4, order_);
+ByteView TiffDirectory::data(std::size_t entry_offset, std::size_t size) const {
+  const std::size_t count = number_at(file_, entry_offset + 4, 4, order_);
   const bool is_inline = size * count <= 4;
-  return bytes_at(file_, is_inline ? at + 8 : number_at(file_, at + 8, 4, order_), size * count);
+  return bytes_at(file_,
+                  is_inline ? entry_offset + 8 : number_at(file_, entry_offset + 8, 4, order_),
+                  size * count);
 }
 
 std::vector<std::uint32_t> TiffDirectory::values(TiffTag tag) const {
   const auto entry = entries_.find(tag);
   if (entry == entries_.end()) return {};
-  const std::size_t at = entry->second;
-  const std::size_t size = size_of_type(number_at(file_, at + 2, 2, order_));
-  const ByteView bytes = data(at, size);
+  const std::size_t entry_offset = entry->second;
+  const std::size_t size = size_of_type(number_at(file_, entry_offset + 2, 2, order_));
+  const ByteView bytes = data(entry_offset, size);
   std::vector<std::uint32_t> values(size == 0 ? 0 : bytes.size() / size);
   for (std::size_t i = 0; i < values.size(); ++i) {
     values[i] = number_at(bytes, i * size, size, order_);
@@ -77,19 +79,19 @@ std::string TiffDirectory::text(TiffTag tag) const {
   return text;
 }
 
-std::uint32_t TiffDirectory::value(TiffTag tag, std::uint32_t otherwise) const {
-  const std::vector<std::uint32_t> all = values(tag);
-  return all.empty() ? otherwise : all.front();
+std::uint32_t TiffDirectory::value(TiffTag tag, std::uint32_t default_value) const {
+  const std::vector<std::uint32_t> numbers = values(tag);
+  return numbers.empty() ? default_value : numbers.front();
 }
 
 std::optional<double> TiffDirectory::fraction(TiffTag tag) const {
   const auto entry = entries_.find(tag);
   if (entry == entries_.end()) return std::nullopt;
-  const std::size_t at = entry->second;
-  if (number_at(file_, at + 2, 2, order_) != kRational) return std::nullopt;
-  const std::size_t place = number_at(file_, at + 8, 4, order_);
-  const std::uint32_t numerator = number_at(file_, place, 4, order_);
-  const std::uint32_t denominator = number_at(file_, place + 4, 4, order_);
+  const std::size_t entry_offset = entry->second;
+  if (number_at(file_, entry_offset + 2, 2, order_) != kRational) return std::nullopt;
+  const std::size_t offset = number_at(file_, entry_offset + 8, 4, order_);
+  const std::uint32_t numerator = number_at(file_, offset, 4, order_);
+  const std::uint32_t denominator = number_at(file_, offset + 4, 4, order_);
   if (denominator == 0) return std::nullopt;
   return static_cast<double>(numerator) / denominator;
 }
@@ -105,7 +107,7 @@ TiffPictures pictures_of_tiff(ByteView file) {
       directory = TiffDirectory(file, directory.next());
     }
   } catch (const ImageFault&) {
-    // The directories before it can be read.
+    // The directories before the damaged one are valid.
   }
   pictures.count = std::max(pictures.count, 1);
   return pictures;

@@ -1,4 +1,4 @@
-/// \file The directory of a TIFF file. Exif notes in other files are one as well.
+/// \file The directory of a TIFF file; Exif metadata in other files have the same format.
 /// Source: TIFF 6.0, section 2.
 #pragma once
 
@@ -54,9 +54,9 @@ enum class TiffTag : std::uint32_t {
 /// The entries of one directory of a TIFF file.
 class TiffDirectory {
  public:
-  /// \param at  where it starts in the file; 0: the first
+  /// \param offset  in the file; 0: the first directory
   /// \throws ImageFault if the header or the directory is truncated, or a tag appears twice
-  explicit TiffDirectory(ByteView file, std::size_t at = 0);
+  explicit TiffDirectory(ByteView file, std::size_t offset = 0);
 
   [[nodiscard]] bool has(TiffTag tag) const { return entries_.count(tag) != 0; }
   /// All values of an entry (BYTE, SHORT or LONG); none if it is absent or of another type.
@@ -65,37 +65,37 @@ class TiffDirectory {
   /// The characters of an ASCII entry without NUL and blanks; empty if it is absent.
   /// \throws ImageFault if they are truncated
   [[nodiscard]] std::string text(TiffTag tag) const;
-  /// The first value of an entry, or `otherwise`.
-  [[nodiscard]] std::uint32_t value(TiffTag tag, std::uint32_t otherwise) const;
+  /// The first value of an entry, or `default_value`.
+  [[nodiscard]] std::uint32_t value(TiffTag tag, std::uint32_t default_value) const;
   /// The first value of a RATIONAL entry; nothing if it is absent, of another type, or if its
   /// denominator is 0.
   [[nodiscard]] std::optional<double> fraction(TiffTag tag) const;
 
   [[nodiscard]] std::size_t start() const noexcept { return start_; }
-  /// Where the next directory starts; 0 after the last.
+  /// Offset of the next directory; 0 after the last.
   [[nodiscard]] std::size_t next() const noexcept { return next_; }
-  /// Whether its picture is a reduced copy of another one, such as a thumbnail.
+  /// Whether the directory's picture is a reduced copy of another one, such as a thumbnail.
   [[nodiscard]] bool is_reduced() const;
 
  private:
-  /// The values of the entry at `at`, each of `size` bytes.
-  [[nodiscard]] ByteView data(std::size_t at, std::size_t size) const;
+  /// The values of an entry, each of `size` bytes.
+  [[nodiscard]] ByteView data(std::size_t entry_offset, std::size_t size) const;
 
   ByteView file_;
   ByteOrder order_;
   std::size_t start_ = 0;
   std::size_t next_ = 0;
-  std::map<TiffTag, std::size_t> entries_;  ///< where the 12 bytes of each tag's entry start
+  std::map<TiffTag, std::size_t> entries_;  ///< offset of each tag's 12-byte entry
 };
 
 /// The pictures of a TIFF file.
 struct TiffPictures {
-  std::size_t first = 0;  ///< where the directory of the first starts
+  std::size_t first = 0;  ///< offset of the first picture's directory
   int count = 1;
 };
 
-/// Reduced copies do not count, unless there is nothing else. A damaged directory after the first
-/// ends the search.
+/// Finds the pictures, without reduced copies unless there are no others. Stops at a damaged
+/// directory after the first.
 /// \throws ImageFault if the header or the first directory is damaged
 [[nodiscard]] TiffPictures pictures_of_tiff(ByteView file);
 

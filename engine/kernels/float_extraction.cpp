@@ -19,26 +19,27 @@ namespace {
 
 static_assert(ExtractionOptions::kMaxRadius <= kMaxGlRadius);
 
-/// Gives the plane a shape. If it has another one, its samples become 0; otherwise they stay.
+/// Gives the plane the shape of an image. Keeps the samples if the shape fits, else zeroes them.
 template <typename Sample>
-void reshape(Plane<Sample>& plane, const GreyImage& like) {
-  const int height = like.height();
-  if (plane.height() != height || plane.width() != like.width()) plane = {height, like.width()};
+void reshape(Plane<Sample>& plane, const GreyImage& image) {
+  const int height = image.height();
+  if (plane.height() != height || plane.width() != image.width()) plane = {height, image.width()};
 }
 
-/// The same if the plane is wanted; otherwise empties it.
+/// Reshapes a requested plane, and empties any other.
 template <typename Sample>
-void reshape_if(bool wanted, Plane<Sample>& plane, const GreyImage& like) {
-  if (wanted) {
-    reshape(plane, like);
+void reshape_if(bool requested, Plane<Sample>& plane, const GreyImage& image) {
+  if (requested) {
+    reshape(plane, image);
   } else {
     plane = {};
   }
 }
 
-void shape_planes(const GreyImage& image, const WantedPlanes& wanted, Extraction<float>& result) {
+void shape_planes(const GreyImage& image, const RequestedPlanes& requested,
+                  Extraction<float>& result) {
   reshape(result.texture, image);
-  reshape_if(wanted.picture, result.picture, image);
+  reshape_if(requested.picture, result.picture, image);
 }
 
 void fill_flat(Extraction<float>& result) {
@@ -59,19 +60,19 @@ std::array<Plane<float>*, 4> sub_bands_of(Extraction<float>& result) {
   return {&result.sub_band_ll, &result.sub_band_lh, &result.sub_band_hl, &result.sub_band_hh};
 }
 
-void keep_csgv(const HalfGradient& gradient, Plane<float>& csgv) {
+void store_csgv(const HalfGradient& gradient, Plane<float>& csgv) {
   if (csgv.empty()) return;
   for_each_tile(csgv.height(), csgv.width(), [&](Columns tile) {
     for (int y = 0; y < csgv.height(); ++y) {
-      const float* const from = gradient.row(y / 2, tile);
-      float* const to = csgv.row(y).data() + tile.first;
-      for (int x = 0; x < tile.count(); ++x) to[x] = from[x / 2];
+      const float* const half_row = gradient.row(y / 2, tile);
+      float* const out = csgv.row(y).data() + tile.first;
+      for (int x = 0; x < tile.count(); ++x) out[x] = half_row[x / 2];
     }
   });
 }
 
-/// The orders of rows of a tile of the image, one after the other. Two rows share their orders, and
-/// so do two pixels of a row.
+/// Computes the orders of a tile row by row. Pairs of rows share their orders, and so do pairs of
+/// pixels within a row.
 class OrderRows {
  public:
   OrderRows(const HalfGradient& gradient, Columns tile)
@@ -80,9 +81,9 @@ class OrderRows {
         row_(1, static_cast<std::size_t>(tile.count()) + 1, kVectorBytes / sizeof(float)) {}
 
   const float* row(int y) {
-    if (y / 2 != made_) {
-      made_ = y / 2;
-      order_row(gradient_.row(made_, tile_), (tile_.count() + 1) / 2, gradient_.largest(),
+    if (y / 2 != y_) {
+      y_ = y / 2;
+      order_row(gradient_.row(y_, tile_), (tile_.count() + 1) / 2, gradient_.max_csgv(),
                 row_.row(0));
     }
     return row_.row(0);
@@ -92,12 +93,11 @@ class OrderRows {
   const HalfGradient& gradient_;
   Columns tile_;
   AlignedRows<float> row_;
-  int made_ = -1;
+  int y_ = -1;
 };
 
 /// Filters the rows of one tile of a strip of the image.
-/// \param order_of  called with y for the strip's rows, one after the other; returns the order for
-///   gl_row()
+/// \param order_of  called with y for each row in order; returns the order argument of gl_row()
 template <typename OrderOf>
 void filter_rows(const GreyImage& image, int radius, Rows strip, Columns tile,
                  Extraction<float>& result, OrderOf order_of) {
@@ -106,7 +106,7 @@ void filter_rows(const GreyImage& image, int radius, Rows strip, Columns tile,
     const auto order = order_of(y);
     rows.next_row();
     float* const texture = result.texture.row(y).data() + tile.first;
-    fetch_ahead(result.texture, y + 1, tile);
+    prefetch_row(result.texture, y + 1, tile);
     gl_row(rows, radius, order, texture);
     if (!result.picture.empty()) {  // while the row is in the cache
       picture_row(texture, tile.count(), result.picture.row(y).data() + tile.first);
@@ -114,8 +114,8 @@ void filter_rows(const GreyImage& image, int radius, Rows strip, Columns tile,
   }
 }
 
-void second_pass(const GreyImage& image, int radius, const HalfGradient& gradient,
-                 Extraction<float>& result) {
+void run_second_pass(const GreyImage& image, int radius, const HalfGradient& gradient,
+                     Extraction<float>& result) {
   for_each_strip(image.height(), image.width(), [&](Rows strip) {
     for_each_tile(image.height(), image.width(), [&](Columns tile) {
       OrderRows orders(gradient, tile);
@@ -132,35 +132,35 @@ void second_pass(const GreyImage& image, int radius, const HalfGradient& gradien
 
 }  // namespace
 
-void extract_adaptive(const GreyImage& image, int radius, const WantedPlanes& wanted,
+void extract_adaptive(const GreyImage& image, int radius, const RequestedPlanes& requested,
                       Extraction<float>& result) {
   clear_other_methods(result);
   for (Plane<float>* const plane : sub_bands_of(result)) {
-    if (!wanted.sub_bands) *plane = {};
+    if (!requested.sub_bands) *plane = {};
   }
-  if (wanted.sub_bands) extract_sub_bands(image, result);
-  shape_planes(image, wanted, result);
+  if (requested.sub_bands) extract_sub_bands(image, result);
+  shape_planes(image, requested, result);
   const HalfGradient gradient(image, result.texture);
-  reshape_if(wanted.csgv, result.csgv, image);
-  keep_csgv(gradient, result.csgv);
-  reshape_if(wanted.order, result.order, image);
-  if (gradient.largest() < static_cast<float>(kFlatBelowCsgv)) {
+  reshape_if(requested.csgv, result.csgv, image);
+  store_csgv(gradient, result.csgv);
+  reshape_if(requested.order, result.order, image);
+  if (gradient.max_csgv() < static_cast<float>(kFlatBelowCsgv)) {
     std::ranges::fill(result.order.samples(), 0.0F);
     fill_flat(result);
   } else {
-    second_pass(image, radius, gradient, result);
+    run_second_pass(image, radius, gradient, result);
   }
 }
 
-void extract_fixed(const GreyImage& image, int radius, double order, const WantedPlanes& wanted,
-                   Extraction<float>& result) {
+void extract_fixed(const GreyImage& image, int radius, double order,
+                   const RequestedPlanes& requested, Extraction<float>& result) {
   clear_other_methods(result);
   for (Plane<float>* const plane : sub_bands_of(result)) *plane = {};
   result.csgv = {};
-  reshape_if(wanted.order, result.order, image);
+  reshape_if(requested.order, result.order, image);
   std::fill(result.order.samples().begin(), result.order.samples().end(),
             static_cast<float>(order));
-  shape_planes(image, wanted, result);
+  shape_planes(image, requested, result);
   for_each_strip(image.height(), image.width(), [&](Rows strip) {
     for_each_tile(image.height(), image.width(), [&](Columns tile) {
       filter_rows(image, radius, strip, tile, result, [=](int) { return order; });
@@ -177,9 +177,9 @@ void extract_sub_bands(const GreyImage& image, Extraction<float>& result) {
   }
   ColumnFilter filter(image, {0, width});
   for (int y = 0; y < height; ++y) {
-    BandRows<float> to;
-    for (std::size_t band = 0; band < to.size(); ++band) to[band] = planes[band]->row(y).data();
-    filter_along_x(filter.row(y), width, to);
+    BandRows<float> out;
+    for (std::size_t band = 0; band < out.size(); ++band) out[band] = planes[band]->row(y).data();
+    filter_along_x(filter.row(y), width, out);
   }
 }
 

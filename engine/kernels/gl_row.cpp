@@ -14,7 +14,7 @@
 
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-// clang-format off: the next one is compiled for the target that those two have set.
+// clang-format off: the next header is compiled for the target selected above.
 #include "engine/kernels/real_pairs-inl.hpp"
 // clang-format on
 
@@ -23,7 +23,7 @@
 namespace touchtrial::engine {
 namespace {
 
-/// How many columns are processed at a time. With the usual radii their data stay in the
+/// The number of columns processed at a time. With the usual radii their data stay in the
 /// first-level cache.
 constexpr int kTile = 512;
 constexpr int kSlack = static_cast<int>(kVectorBytes / sizeof(std::int16_t));
@@ -78,13 +78,14 @@ namespace HWY_NAMESPACE {
 namespace {
 
 /// Converts a row of bytes to 16-bit integers.
-void widened(const std::uint8_t* from, int width, std::int16_t* to) {
+void widen(const std::uint8_t* source, int width, std::int16_t* target) {
   int x = 0;
-  for (; x + kBlock <= width; x += kBlock) hn::StoreU(load_bytes(from + x), Integers(), to + x);
-  for (; x < width; ++x) to[x] = from[x];
+  for (; x + kBlock <= width; x += kBlock)
+    hn::StoreU(load_bytes(source + x), Integers(), target + x);
+  for (; x < width; ++x) target[x] = source[x];
 }
 
-/// Applies the factors of each pixel's own order.
+/// Applies the factors of each pixel's order.
 class PixelOrders {
  public:
   explicit PixelOrders(const float* orders) : orders_(orders) {}
@@ -106,16 +107,16 @@ class PixelOrders {
 };
 
 /// Applies the factors of one order for all pixels.
-class OneOrder {
+class SharedOrder {
  public:
-  explicit OneOrder(const FixedFactors& factors) : factors_(factors) {}
-  struct Nothing {};
-  static HWY_INLINE Nothing at(int) { return {}; }
-  HWY_INLINE RealPair step(Nothing, int k, RealPair ring, RealPair inner) const {
+  explicit SharedOrder(const FixedFactors& factors) : factors_(factors) {}
+  struct NoOrder {};
+  static HWY_INLINE NoOrder at(int) { return {}; }
+  HWY_INLINE RealPair step(NoOrder, int k, RealPair ring, RealPair inner) const {
     const auto decay = hn::Set(Reals(), factors_.decays[k]);
     return {hn::MulAdd(decay, inner.lower, ring.lower), hn::MulAdd(decay, inner.upper, ring.upper)};
   }
-  HWY_INLINE RealPair finish(Nothing, RealPair sum) const {
+  HWY_INLINE RealPair finish(NoOrder, RealPair sum) const {
     const auto gain = hn::Set(Reals(), factors_.gain);
     return {hn::Mul(gain, sum.lower), hn::Mul(gain, sum.upper)};
   }
@@ -124,7 +125,7 @@ class OneOrder {
   const FixedFactors& factors_;
 };
 
-/// Where the column sums of a ring begin: at a whole multiple of kBlock columns before the tile.
+/// The first column sum of a ring, a multiple of kBlock columns before the tile.
 constexpr int first_block(int k) {
   return -(k + kBlock - 1) / kBlock * kBlock;
 }
@@ -142,19 +143,19 @@ HWY_INLINE void sum_columns(const ExtendedRows& rows, int k, Tile tile, Workspac
 }
 
 /// The column sums of both rings of radius 2. Loads the centre only once.
-HWY_INLINE void sum_columns_of_two(const ExtendedRows& rows, Tile tile, Workspace& work) {
+HWY_INLINE void sum_columns_radius_2(const ExtendedRows& rows, Tile tile, Workspace& work) {
   const Integers d;
-  const std::array<const std::int16_t*, 5> from = {rows.row(-2) + tile.x0, rows.row(-1) + tile.x0,
-                                                   rows.row(0) + tile.x0, rows.row(1) + tile.x0,
-                                                   rows.row(2) + tile.x0};
+  const std::array<const std::int16_t*, 5> source = {rows.row(-2) + tile.x0, rows.row(-1) + tile.x0,
+                                                     rows.row(0) + tile.x0, rows.row(1) + tile.x0,
+                                                     rows.row(2) + tile.x0};
   std::int16_t* const inner = work.sums[0] + kFront;
   std::int16_t* const outer = work.sums[1] + kFront;
   for (int i = first_block(2); i < tile.width + 2; i += kBlock) {
-    const auto centre = hn::Load(d, from[2] + i);
-    const auto near = hn::Add(hn::Load(d, from[1] + i), hn::Load(d, from[3] + i));
-    const auto far = hn::Add(hn::Load(d, from[0] + i), hn::Load(d, from[4] + i));
-    hn::Store(hn::Add(near, centre), d, inner + i);
-    hn::Store(hn::Add(far, centre), d, outer + i);
+    const auto centre = hn::Load(d, source[2] + i);
+    const auto near_wings = hn::Add(hn::Load(d, source[1] + i), hn::Load(d, source[3] + i));
+    const auto far_wings = hn::Add(hn::Load(d, source[0] + i), hn::Load(d, source[4] + i));
+    hn::Store(hn::Add(near_wings, centre), d, inner + i);
+    hn::Store(hn::Add(far_wings, centre), d, outer + i);
   }
 }
 
@@ -170,8 +171,8 @@ HWY_INLINE RealPair ring_difference(const Workspace& work, int k, int i, Integer
 /// \tparam kRadius  the radius if it is known at compile time, else 0
 template <int kRadius, class Orders>
 HWY_INLINE RealPair texture_block(const Workspace& work, const std::int16_t* centres,
-                                  int any_radius, int x0, int i, const Orders& orders) {
-  const int radius = kRadius == 0 ? any_radius : kRadius;
+                                  int runtime_radius, int x0, int i, const Orders& orders) {
+  const int radius = kRadius == 0 ? runtime_radius : kRadius;
   const auto centre = hn::Load(Integers(), centres + x0 + i);
   const auto nine_centre = hn::Add(hn::ShiftLeft<3>(centre), centre);
   const auto order = orders.at(x0 + i);
@@ -191,9 +192,9 @@ HWY_INLINE void texture_tile(const Workspace& work, const std::int16_t* centres,
                texture + tile.x0 + i);
   }
   if (i == tile.width) return;
-  alignas(64) float rest[kBlock];
-  store_pair(texture_block<kRadius>(work, centres, radius, tile.x0, i, orders), rest);
-  std::copy_n(rest, tile.width - i, texture + tile.x0 + i);
+  alignas(64) float last_block[kBlock];
+  store_pair(texture_block<kRadius>(work, centres, radius, tile.x0, i, orders), last_block);
+  std::copy_n(last_block, tile.width - i, texture + tile.x0 + i);
 }
 
 template <class Orders>
@@ -203,7 +204,7 @@ HWY_INLINE void texture_row(const ExtendedRows& rows, int radius, const Orders& 
   for (int x0 = 0; x0 < rows.width(); x0 += kTile) {
     const Tile tile{x0, std::min(kTile, rows.width() - x0)};
     if (radius == 2) {  // specialised for the usual radius
-      sum_columns_of_two(rows, tile, work);
+      sum_columns_radius_2(rows, tile, work);
       texture_tile<2>(work, rows.row(0), radius, tile, orders, texture);
     } else {
       for (int k = 1; k <= radius; ++k) sum_columns(rows, k, tile, work);
@@ -212,13 +213,13 @@ HWY_INLINE void texture_row(const ExtendedRows& rows, int radius, const Orders& 
   }
 }
 
-void row_of_orders(const ExtendedRows& rows, int radius, const float* orders, float* texture) {
+void row_with_orders(const ExtendedRows& rows, int radius, const float* orders, float* texture) {
   texture_row(rows, radius, PixelOrders(orders), texture);
 }
 
-void row_of_one_order(const ExtendedRows& rows, int radius, const FixedFactors& factors,
-                      float* texture) {
-  texture_row(rows, radius, OneOrder(factors), texture);
+void row_with_shared_order(const ExtendedRows& rows, int radius, const FixedFactors& factors,
+                           float* texture) {
+  texture_row(rows, radius, SharedOrder(factors), texture);
 }
 
 }  // namespace
@@ -230,20 +231,20 @@ HWY_AFTER_NAMESPACE();
 namespace touchtrial::engine {
 namespace {
 
-HWY_EXPORT(widened);
-HWY_EXPORT(row_of_orders);
-HWY_EXPORT(row_of_one_order);
+HWY_EXPORT(widen);
+HWY_EXPORT(row_with_orders);
+HWY_EXPORT(row_with_shared_order);
 
 }  // namespace
 
-ExtendedRows::ExtendedRows(const GreyImage& image, int reach, int first, Columns tile)
+ExtendedRows::ExtendedRows(const GreyImage& image, int reach, int first_row, Columns tile)
     : image_(image),
       tile_(tile),
       reach_(reach),
-      y_(first - 1),
+      y_(first_row - 1),
       rows_(2 * static_cast<std::size_t>(reach) + 1, static_cast<std::size_t>(tile.count()),
             static_cast<std::size_t>(reach)) {
-  // The current row is the one before the first: what lies at -reach is not needed.
+  // The current row is the one before the first, so the row at -reach is not needed.
   for (int offset = 1 - reach; offset <= reach; ++offset) load(offset);
 }
 
@@ -256,22 +257,25 @@ void ExtendedRows::next_row() {
 void ExtendedRows::load(int offset) {
   const int y = y_ + offset;
   const int width = image_.width();
-  const Columns inside = {std::max(tile_.first - reach_, 0), std::min(tile_.last + reach_, width)};
-  fetch_ahead(image_, y + 1, inside);
-  std::int16_t* const to = rows_.row(slot(offset)) - tile_.first;  // column 0
-  HWY_DYNAMIC_DISPATCH(widened)
-  (image_.row(symmetric_index(y, image_.height())).data() + inside.first, inside.count(),
-   to + inside.first);
-  for (int x = tile_.first - reach_; x < inside.first; ++x) to[x] = to[symmetric_index(x, width)];
-  for (int x = inside.last; x < tile_.last + reach_; ++x) to[x] = to[symmetric_index(x, width)];
+  const Columns image_columns = {std::max(tile_.first - reach_, 0),
+                                 std::min(tile_.last + reach_, width)};
+  prefetch_row(image_, y + 1, image_columns);
+  std::int16_t* const target = rows_.row(slot(offset)) - tile_.first;  // column 0
+  HWY_DYNAMIC_DISPATCH(widen)
+  (image_.row(symmetric_index(y, image_.height())).data() + image_columns.first,
+   image_columns.count(), target + image_columns.first);
+  for (int x = tile_.first - reach_; x < image_columns.first; ++x)
+    target[x] = target[symmetric_index(x, width)];
+  for (int x = image_columns.last; x < tile_.last + reach_; ++x)
+    target[x] = target[symmetric_index(x, width)];
 }
 
 void gl_row(const ExtendedRows& rows, int radius, const float* orders, float* texture) {
-  HWY_DYNAMIC_DISPATCH(row_of_orders)(rows, radius, orders, texture);
+  HWY_DYNAMIC_DISPATCH(row_with_orders)(rows, radius, orders, texture);
 }
 
 void gl_row(const ExtendedRows& rows, int radius, double order, float* texture) {
-  HWY_DYNAMIC_DISPATCH(row_of_one_order)
+  HWY_DYNAMIC_DISPATCH(row_with_shared_order)
   (rows, radius, FixedFactors(order, radius), texture);
 }
 

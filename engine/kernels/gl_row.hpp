@@ -1,5 +1,5 @@
-/// \file A window of image rows, and from it one row of Gruenwald-Letnikov texture in single
-/// precision, vectorised for every target.
+/// \file Computes rows of Gruenwald-Letnikov texture in single precision from a window of image
+/// rows, vectorised for every target.
 ///
 /// W_k is the sum of three samples of a column: k above the row, in it, and k below it. Then
 ///   8 D_k(x) = 9 I(x) - W_k(x - k) - W_k(x) - W_k(x + k),
@@ -16,25 +16,24 @@
 
 namespace touchtrial::engine {
 
-/// Rows y - reach .. y + reach of a tile of an image for one y at a time, as 16-bit integers, with
-/// `reach` samples more at both ends, mirrored where the image ends. Converts every row once, and
-/// needs memory for (2 * reach + 1) rows, for any height. Keeps a reference to the image. Not
-/// thread-safe.
+/// A sliding window of the rows y - reach .. y + reach of a tile of an image, as 16-bit integers.
+/// Rows are extended by `reach` samples at both ends, mirrored at the image's edges. Converts every
+/// row once and stores 2 * reach + 1 rows. Keeps a reference to the image. Not thread-safe.
 class ExtendedRows {
  public:
   /// \param image  not empty
   /// \param reach  >= 1; may exceed the image
-  /// \param first  the first row of the series
-  ExtendedRows(const GreyImage& image, int reach, int first = 0)
-      : ExtendedRows(image, reach, first, {0, image.width()}) {}
+  /// \param first_row  the row of the image to which the first next_row() moves
+  ExtendedRows(const GreyImage& image, int reach, int first_row = 0)
+      : ExtendedRows(image, reach, first_row, {0, image.width()}) {}
   /// \param tile  columns of the image, at least one
-  ExtendedRows(const GreyImage& image, int reach, int first, Columns tile);
+  ExtendedRows(const GreyImage& image, int reach, int first_row, Columns tile);
 
-  /// Moves to the next row, which must exist. The first call moves to the first row.
+  /// Moves to the next row, which must exist. The first call moves to `first_row`.
   void next_row();
 
-  /// The tile's first sample of the row that lies `offset` below the current one. Samples -reach ..
-  /// width - 1 + reach may be read, and a vector more. Valid until next_row().
+  /// The tile's first sample of the row `offset` below the current row. Samples -reach .. width - 1
+  /// + reach and one further vector may be read. Valid until next_row().
   /// \param offset  -reach .. reach
   [[nodiscard]] const std::int16_t* row(int offset) const noexcept {
     return rows_.row(slot(offset));
@@ -42,15 +41,15 @@ class ExtendedRows {
   [[nodiscard]] int width() const noexcept { return tile_.count(); }
 
  private:
-  /// Puts a row of the image into the place for an offset.
+  /// Loads a row of the image into the slot of an offset.
   void load(int offset);
-  /// The rows at offsets -reach .. reach have different slots, which turn with the current row.
+  /// The slot of the row at an offset; slots rotate with the current row.
   [[nodiscard]] std::size_t slot(int offset) const noexcept {
-    const int place = current_ + offset;
+    const int index = current_ + offset;
     const int count = 2 * reach_ + 1;
-    return static_cast<std::size_t>(place < 0        ? place + count
-                                    : place >= count ? place - count
-                                                     : place);
+    return static_cast<std::size_t>(index < 0        ? index + count
+                                    : index >= count ? index - count
+                                                     : index);
   }
 
   const GreyImage& image_;

@@ -1,5 +1,5 @@
-/// \file The composite sub-band gradient (CSGV) of an image at half resolution, and the orders that
-/// follow from it, in single precision, vectorised for every target.
+/// \file The composite sub-band gradient (CSGV) of an image at half resolution and the resulting
+/// orders, in single precision, vectorised for every target.
 /// Source: docs/method.md, "Gradient and order map".
 #pragma once
 
@@ -10,42 +10,41 @@
 
 namespace touchtrial::engine {
 
-/// CSGV at half resolution, and its maximum. As the maximum is known only after the last row, the
-/// orders need a second pass. Until then CSGV waits in the plane that will receive the texture.
+/// CSGV at half resolution, and its maximum. The orders need a second pass, because the maximum is
+/// known only after the last row. Until then CSGV is stored in the scratch plane.
 ///
-/// Everything up to the gradient is exact in whole numbers: CSGV is exact where the gradient is a
-/// whole number along one axis, as for ramps, and 0 where there is no gradient.
+/// Computation up to the gradient uses exact integers. CSGV is exact where the gradient is an
+/// integer along one axis, as for ramps, and 0 where there is no gradient.
 class HalfGradient {
  public:
   /// \param image  not empty
-  /// \param room  a plane of the image's shape, which is overwritten. Two rows of a tile of it
-  ///   (for_each_tile) belong to each row of CSGV there, and nothing else is stored there: after
-  ///   reading row(y, tile), rows 2 y and 2 y + 1 of the tile may be overwritten. Must outlive
-  ///   this.
-  HalfGradient(const GreyImage& image, Plane<float>& room);
+  /// \param scratch  a plane of the image's shape, which is overwritten. Row y of CSGV in a tile
+  ///   (for_each_tile) uses rows 2 y and 2 y + 1 of that tile, which may be overwritten after
+  ///   reading row(y, tile). Must outlive this object.
+  HalfGradient(const GreyImage& image, Plane<float>& scratch);
 
   /// CSGV of a tile of the image, rounded up to whole pairs of columns.
-  [[nodiscard]] const float* row(int y, Columns tile) const noexcept { return place(y, tile); }
+  [[nodiscard]] const float* row(int y, Columns tile) const noexcept { return row_start(y, tile); }
   [[nodiscard]] int height() const noexcept { return height_; }
   [[nodiscard]] int width() const noexcept { return width_; }
-  [[nodiscard]] float largest() const noexcept { return largest_; }
+  [[nodiscard]] float max_csgv() const noexcept { return max_csgv_; }
 
  private:
-  [[nodiscard]] float* place(int y, Columns tile) const noexcept {
-    return room_.row(2 * y).data() + tile.first;
+  [[nodiscard]] float* row_start(int y, Columns tile) const noexcept {
+    return scratch_.row(2 * y).data() + tile.first;
   }
   /// \return the largest CSGV of these rows
   float compute(const GreyImage& image, Rows rows, Columns tile);
 
-  Plane<float>& room_;
+  Plane<float>& scratch_;
   int height_;
   int width_;
-  float largest_ = 0.0F;
+  float max_csgv_ = 0.0F;
 };
 
-/// The orders of one row, each twice: out[2 i] = out[2 i + 1] = the order of csgv[i].
-/// \param largest  of the whole image, >= kFlatBelowCsgv
-/// \param out  receives 2 * count samples; two vectors behind them may be overwritten
+/// Computes the orders of one row, each twice: out[2 i] = out[2 i + 1] = order of csgv[i].
+/// \param largest  maximum over the image, >= kFlatBelowCsgv
+/// \param out  receives 2 * count samples; two vectors after them may be overwritten
 void order_row(const float* csgv, int count, float largest, float* out);
 
 }  // namespace touchtrial::engine

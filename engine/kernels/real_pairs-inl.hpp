@@ -1,6 +1,6 @@
 /// \file Conversion of 16-bit integers to floats, for one target: one vector of integers becomes a
 /// pair of vectors of floats. The target with one lane uses only the lower vector of a pair.
-// Included once for every target, by files that do the same.
+// Included once for every target by the kernels.
 #if defined(TOUCHTRIAL_REAL_PAIRS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOUCHTRIAL_REAL_PAIRS_INL
 #undef TOUCHTRIAL_REAL_PAIRS_INL
@@ -30,7 +30,7 @@ using Integers = hn::Repartition<std::int16_t, Reals>;
 using Real = hn::Vec<Reals>;
 using Integer = hn::Vec<Integers>;
 
-/// How many integers a vector holds: the length of a block of samples in the kernels.
+/// The number of integers in a vector: the length of a block of samples in the kernels.
 constexpr int kBlock = static_cast<int>(hn::MaxLanes(Integers()));
 
 struct RealPair {
@@ -38,7 +38,7 @@ struct RealPair {
   Real upper;
 };
 
-/// The integers as floats, exactly.
+/// Converts integers to floats, exactly.
 HWY_INLINE RealPair to_reals(Integer v) {
   const Reals d;
   const WideIntegers wide;
@@ -51,26 +51,26 @@ HWY_INLINE RealPair to_reals(Integer v) {
 #endif
 }
 
-HWY_INLINE RealPair load_pair(const float* from) {
+HWY_INLINE RealPair load_pair(const float* source) {
   const Reals d;
 #if HWY_TARGET == HWY_SCALAR
-  return {hn::LoadU(d, from), hn::Zero(d)};
+  return {hn::LoadU(d, source), hn::Zero(d)};
 #else
-  return {hn::LoadU(d, from), hn::LoadU(d, from + hn::Lanes(d))};
+  return {hn::LoadU(d, source), hn::LoadU(d, source + hn::Lanes(d))};
 #endif
 }
 
-HWY_INLINE void store_pair(RealPair pair, float* to) {
+HWY_INLINE void store_pair(RealPair pair, float* target) {
   const Reals d;
-  hn::StoreU(pair.lower, d, to);
+  hn::StoreU(pair.lower, d, target);
 #if HWY_TARGET != HWY_SCALAR
-  hn::StoreU(pair.upper, d, to + hn::Lanes(d));
+  hn::StoreU(pair.upper, d, target + hn::Lanes(d));
 #endif
 }
 
 /// Loads kBlock bytes as integers.
-HWY_INLINE Integer load_bytes(const std::uint8_t* from) {
-  return hn::PromoteTo(Integers(), hn::LoadU(hn::Rebind<std::uint8_t, Integers>(), from));
+HWY_INLINE Integer load_bytes(const std::uint8_t* source) {
+  return hn::PromoteTo(Integers(), hn::LoadU(hn::Rebind<std::uint8_t, Integers>(), source));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 /// \file Prefetches rows of a large plane.
 ///
-/// Processors look ahead within a page of memory, and a row of a large picture is a page or more.
+/// Hardware prefetches only within a page of memory, and a row of a large picture is a page or
+/// more.
 #pragma once
 
 #include "core/plane.hpp"
@@ -12,12 +13,11 @@
 
 namespace touchtrial::engine {
 
-/// Asks for columns of row y, if there is such a row, of a plane that is large. Changes
-/// nothing.
+/// Prefetches columns of row y of a large plane; does nothing for smaller planes and missing rows.
 template <typename Sample>
-void fetch_ahead(const Plane<Sample>& plane, int y, Columns columns) noexcept {
+void prefetch_row(const Plane<Sample>& plane, int y, Columns columns) noexcept {
   constexpr int kPerLine = 64 / sizeof(Sample);
-  if (plane.size() < kLargeFromPixels || y < 0 || y >= plane.height()) return;
+  if (plane.size() < kMinLargePixels || y < 0 || y >= plane.height()) return;
   const Sample* const row = plane.row(y).data();
   for (int x = columns.first; x < columns.last; x += kPerLine) hwy::Prefetch(row + x);
 }

@@ -1,5 +1,5 @@
-/// \file Strips of a picture's rows, for kernels that use all cores on one large picture, and tiles
-/// of its columns, whose rows stay in the first-level cache.
+/// \file Divides a picture into strips of rows, to use all cores, and into tiles of columns, whose
+/// rows stay in the first-level cache.
 #pragma once
 
 #include "core/parallel.hpp"
@@ -23,16 +23,16 @@ struct Columns {
   [[nodiscard]] int count() const noexcept { return last - first; }
 };
 
-/// From this size on several threads pay off: a megapixel takes half a millisecond.
-inline constexpr std::int64_t kThreadsFromPixels = 1'000'000;
+/// The size from which several threads pay off: a megapixel takes half a millisecond.
+inline constexpr std::int64_t kMinParallelPixels = 1'000'000;
 
-/// Calls work(strip) for strips that together are all rows, on all cores if the picture has
-/// kThreadsFromPixels, else for one strip on the caller's thread. Strips begin at even rows. They
-/// depend on the picture's size alone, and so do results that are sums over strips.
+/// Calls work(strip) for strips that cover all rows: on all cores from kMinParallelPixels, else
+/// once on the caller's thread. Strips begin at even rows and depend only on the picture's size,
+/// and so do sums over strips.
 template <typename Work>
 void for_each_strip(int height, int width, Work work) {
   constexpr int kStrips = 16;
-  if (std::int64_t{height} * width < kThreadsFromPixels) {
+  if (std::int64_t{height} * width < kMinParallelPixels) {
     work(Rows{0, height});
     return;
   }
@@ -44,17 +44,16 @@ void for_each_strip(int height, int width, Work work) {
   });
 }
 
-/// From this size on a plane is too large for the second-level cache by far: rows are asked for
-/// before they are needed (fetch_ahead), and tiles of rows are worked on.
-inline constexpr std::int64_t kLargeFromPixels = std::int64_t{1} << 21;
+/// The size from which a plane far exceeds the second-level cache, so that kernels prefetch rows
+/// (prefetch_row) and work on tiles.
+inline constexpr std::int64_t kMinLargePixels = std::int64_t{1} << 21;
 
-/// Calls work(columns) for tiles of some 512 columns that together are all, from left to right, or
-/// for all at once if the picture is not large. A tile's rows fit into the first-level cache. Tiles
-/// begin at even columns.
+/// Calls work(columns) for tiles of 512 columns from left to right, or once for all columns if the
+/// picture is not large. Tiles begin at even columns.
 template <typename Work>
 void for_each_tile(int height, int width, Work work) {
   constexpr int kColumns = 512;
-  const int columns = std::int64_t{height} * width < kLargeFromPixels ? width : kColumns;
+  const int columns = std::int64_t{height} * width < kMinLargePixels ? width : kColumns;
   for (int first = 0; first < width; first += columns) {
     work(Columns{first, std::min(first + columns, width)});
   }

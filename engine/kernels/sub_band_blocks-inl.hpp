@@ -1,5 +1,5 @@
-/// \file Blocks of DAUB4 sub-bands from rows that are filtered along y, for one target.
-// Included once for every target, by files that do the same.
+/// \file Computes blocks of DAUB4 sub-bands from rows filtered along y, for one target.
+// Included once for every target by the kernels.
 #include "engine/kernels/wavelet_rows.hpp"
 
 #include <array>
@@ -14,7 +14,7 @@ namespace {
 /// The weights of four neighbouring samples.
 using Taps = std::array<std::int16_t, 4>;
 
-/// kRootDenominator times (p + q s)(whole + root s): the weights of the wholes and of the roots.
+/// The weights of `whole` and of `root` in kRootDenominator * (p + q s) * (whole + root s).
 struct RootTaps {
   Taps whole;
   Taps root;
@@ -52,23 +52,24 @@ namespace {
 
 using WideInteger = hn::Vec<WideIntegers>;
 
-/// How many samples of a sub-band a vector holds.
+/// The number of sub-band samples in a vector.
 constexpr int kHalfBlock = static_cast<int>(hn::MaxLanes(WideIntegers()));
 
-/// Adds even * from[0] + odd * from[1], even * from[2] + odd * from[3], .. to the lanes of a sum.
-HWY_INLINE WideInteger add_pairs(const std::int16_t* from, std::int16_t even, std::int16_t odd,
+/// Adds even * samples[0] + odd * samples[1], even * samples[2] + odd * samples[3], .. to the lanes
+/// of a sum.
+HWY_INLINE WideInteger add_pairs(const std::int16_t* samples, std::int16_t even, std::int16_t odd,
                                  WideInteger sum) {
   const WideIntegers wide;
 #if HWY_TARGET == HWY_SCALAR
-  return hn::Add(sum, hn::Set(wide, from[0] * even + from[1] * odd));
+  return hn::Add(sum, hn::Set(wide, samples[0] * even + samples[1] * odd));
 #else
   const Integers d;
-  const auto both = static_cast<std::uint16_t>(even) |
-                    (static_cast<std::uint32_t>(static_cast<std::uint16_t>(odd)) << 16);
-  const auto weights = hn::BitCast(d, hn::Set(wide, static_cast<std::int32_t>(both)));
-  auto other = hn::Zero(wide);
-  sum = hn::ReorderWidenMulAccumulate(wide, hn::LoadU(d, from), weights, sum, other);
-  return hn::RearrangeToOddPlusEven(sum, other);
+  const auto packed = static_cast<std::uint16_t>(even) |
+                      (static_cast<std::uint32_t>(static_cast<std::uint16_t>(odd)) << 16);
+  const auto weights = hn::BitCast(d, hn::Set(wide, static_cast<std::int32_t>(packed)));
+  auto upper_sum = hn::Zero(wide);
+  sum = hn::ReorderWidenMulAccumulate(wide, hn::LoadU(d, samples), weights, sum, upper_sum);
+  return hn::RearrangeToOddPlusEven(sum, upper_sum);
 #endif
 }
 
@@ -82,17 +83,17 @@ HWY_INLINE WideInteger band_block(const std::int16_t* whole, const std::int16_t*
                    add_pairs(root + 2 * i, taps.root[0], taps.root[1], wholes));
 }
 
-/// Calls to(band, block) with a block of each sub-band.
-template <class To>
-HWY_INLINE void for_each_band(const FilteredRows& rows, int i, const To& to) {
+/// Calls visit(band, block) with a block of each sub-band.
+template <class Visit>
+HWY_INLINE void for_each_band(const FilteredRows& rows, int i, const Visit& visit) {
   const auto ll = band_block(rows.low_whole, rows.low_root, kLow, i);
   const auto hl = band_block(rows.low_whole, rows.low_root, kHigh, i);
-  to(0, ll);
-  to(2, hl);
+  visit(0, ll);
+  visit(2, hl);
   const auto lh = band_block(rows.high_whole, rows.high_root, kLow, i);
   const auto hh = band_block(rows.high_whole, rows.high_root, kHigh, i);
-  to(1, lh);
-  to(3, hh);
+  visit(1, lh);
+  visit(3, hh);
 }
 
 }  // namespace

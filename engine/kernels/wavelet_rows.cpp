@@ -12,7 +12,7 @@
 
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-// clang-format off: the next one is compiled for the target that those two have set.
+// clang-format off: the next header is compiled for the target selected above.
 #include "engine/kernels/sub_band_blocks-inl.hpp"
 // clang-format on
 
@@ -21,13 +21,14 @@ namespace touchtrial::engine {
 namespace HWY_NAMESPACE {
 namespace {
 
-HWY_INLINE Integer tripled(Integer v) {
+HWY_INLINE Integer triple(Integer v) {
   return hn::Add(hn::Add(v, v), v);
 }
 
-/// Filters a block of the four rows at `x`, and writes it at `to` of the outputs.
+/// Filters a block of the four rows from column `x`, and writes it to the outputs from column
+/// `out_x`.
 HWY_INLINE void filter_block(const std::array<const std::uint8_t*, 4>& rows, int x,
-                             const FilteredRows& out, int to) {
+                             const FilteredRows& out, int out_x) {
   const Integers d;
   const auto x0 = load_bytes(rows[0] + x);
   const auto x1 = load_bytes(rows[1] + x);
@@ -37,15 +38,16 @@ HWY_INLINE void filter_block(const std::array<const std::uint8_t*, 4>& rows, int
   const auto inner_sum = hn::Add(x1, x2);
   const auto outer_difference = hn::Sub(x0, x3);
   const auto inner_difference = hn::Sub(x1, x2);
-  hn::StoreU(hn::Add(outer_sum, tripled(inner_sum)), d, out.low_whole + to);
-  hn::StoreU(hn::Add(outer_difference, inner_difference), d, out.low_root + to);
-  hn::StoreU(hn::Sub(outer_difference, tripled(inner_difference)), d, out.high_whole + to);
-  hn::StoreU(hn::Sub(inner_sum, outer_sum), d, out.high_root + to);
+  hn::StoreU(hn::Add(outer_sum, triple(inner_sum)), d, out.low_whole + out_x);
+  hn::StoreU(hn::Add(outer_difference, inner_difference), d, out.low_root + out_x);
+  hn::StoreU(hn::Sub(outer_difference, triple(inner_difference)), d, out.high_whole + out_x);
+  hn::StoreU(hn::Sub(inner_sum, outer_sum), d, out.high_root + out_x);
 }
 
-/// \param width  >= 1; no more than this many samples are read
-/// \param out  receives `width` samples each; a vector behind them may be overwritten
-void along_y(const std::array<const std::uint8_t*, 4>& rows, int width, const FilteredRows& out) {
+/// \param width  >= 1; exactly this many samples are read
+/// \param out  receives `width` samples each; a vector after them may be overwritten
+void filter_along_y(const std::array<const std::uint8_t*, 4>& rows, int width,
+                    const FilteredRows& out) {
   int x = 0;
   for (; x + kBlock <= width; x += kBlock) filter_block(rows, x, out, x);
   if (x == width) return;
@@ -58,24 +60,24 @@ void along_y(const std::array<const std::uint8_t*, 4>& rows, int width, const Fi
   filter_block({copies[0], copies[1], copies[2], copies[3]}, 0, out, 0);
 }
 
-void values_block(const FilteredRows& rows, int i, const BandRows<float>& out, int to) {
+void store_values_block(const FilteredRows& rows, int i, const BandRows<float>& out, int out_x) {
   const Reals d;
   for_each_band(rows, i, [&](std::size_t band, WideInteger block) HWY_ATTR {
-    hn::StoreU(hn::Mul(hn::ConvertTo(d, block), hn::Set(d, kWaveletScale)), d, out[band] + to);
+    hn::StoreU(hn::Mul(hn::ConvertTo(d, block), hn::Set(d, kWaveletScale)), d, out[band] + out_x);
   });
 }
 
-void values_along_x(const FilteredRows& rows, int count, const BandRows<float>& out) {
+void store_values(const FilteredRows& rows, int count, const BandRows<float>& out) {
   int i = 0;
-  for (; i + kHalfBlock <= count; i += kHalfBlock) values_block(rows, i, out, i);
+  for (; i + kHalfBlock <= count; i += kHalfBlock) store_values_block(rows, i, out, i);
   if (i == count) return;
   if (count >= kHalfBlock) {
-    values_block(rows, count - kHalfBlock, out, count - kHalfBlock);
+    store_values_block(rows, count - kHalfBlock, out, count - kHalfBlock);
     return;
   }
-  float all[4][kHalfBlock];
-  values_block(rows, 0, {all[0], all[1], all[2], all[3]}, 0);
-  for (std::size_t band = 0; band < 4; ++band) std::copy_n(all[band], count, out[band]);
+  float blocks[4][kHalfBlock];
+  store_values_block(rows, 0, {blocks[0], blocks[1], blocks[2], blocks[3]}, 0);
+  for (std::size_t band = 0; band < 4; ++band) std::copy_n(blocks[band], count, out[band]);
 }
 
 }  // namespace
@@ -85,15 +87,15 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace touchtrial::engine {
-HWY_EXPORT(along_y);
-HWY_EXPORT(values_along_x);
+HWY_EXPORT(filter_along_y);
+HWY_EXPORT(store_values);
 
 ColumnFilter::ColumnFilter(const GreyImage& image, Columns columns)
     : image_(image),
       first_x_(2 * columns.first),
-      available_(std::min(2 * columns.count() + 2, image.width() - first_x_)),
-      wanted_(2 * columns.count() + 2),
-      samples_(4, static_cast<std::size_t>(wanted_), kVectorBytes / sizeof(std::int16_t)),
+      image_width_(std::min(2 * columns.count() + 2, image.width() - first_x_)),
+      filtered_width_(2 * columns.count() + 2),
+      samples_(4, static_cast<std::size_t>(filtered_width_), kVectorBytes / sizeof(std::int16_t)),
       rows_{samples_.row(0), samples_.row(1), samples_.row(2), samples_.row(3)} {}
 
 const FilteredRows& ColumnFilter::row(int y) {
@@ -101,20 +103,20 @@ const FilteredRows& ColumnFilter::row(int y) {
   for (int m = 0; m < 4; ++m) {
     rows[m] = image_.row(symmetric_index(2 * y + m, image_.height())).data() + first_x_;
   }
-  for (int m = 4; m < 6; ++m) fetch_ahead(image_, 2 * y + m, {first_x_, first_x_ + available_});
-  HWY_DYNAMIC_DISPATCH(along_y)(rows, available_, rows_);
+  for (int m = 4; m < 6; ++m) prefetch_row(image_, 2 * y + m, {first_x_, first_x_ + image_width_});
+  HWY_DYNAMIC_DISPATCH(filter_along_y)(rows, image_width_, rows_);
   for (std::size_t part = 0; part < 4; ++part) extend(samples_.row(part));
   return rows_;
 }
 
 void ColumnFilter::extend(std::int16_t* row) const {
-  for (int x = available_; x < wanted_; ++x) {
+  for (int x = image_width_; x < filtered_width_; ++x) {
     row[x] = row[symmetric_index(first_x_ + x, image_.width()) - first_x_];
   }
 }
 
 void filter_along_x(const FilteredRows& rows, int count, const BandRows<float>& out) {
-  HWY_DYNAMIC_DISPATCH(values_along_x)(rows, count, out);
+  HWY_DYNAMIC_DISPATCH(store_values)(rows, count, out);
 }
 
 }  // namespace touchtrial::engine

@@ -21,13 +21,12 @@ constexpr int kGreyLevels = 256;
 /// Counts of one pair of levels, for each of kGlcmOffsets.
 using GlcmCell = std::array<std::uint32_t, 4>;
 
-/// How often each ordered pair (level of a pixel, level of its neighbour) occurs. The four
-/// directions of a pair lie side by side, so that neighbouring pixels of a texture use the same
-/// cache lines.
+/// Counts of each ordered pair (level of a pixel, level of its neighbour). The four directions of a
+/// pair are stored together, so that neighbouring pixels use the same cache lines.
 class GlcmCounts {
  public:
   explicit GlcmCounts(const GreyImage& image) : GlcmCounts() {
-    if (static_cast<std::int64_t>(image.size()) < kThreadsFromPixels) {
+    if (static_cast<std::int64_t>(image.size()) < kMinParallelPixels) {
       count(image, {0, image.height()});
       return;
     }
@@ -70,41 +69,41 @@ class GlcmCounts {
     }
   }
 
-  void count_row(const std::uint8_t* row, const std::uint8_t* above, std::size_t width) {
+  void count_row(const std::uint8_t* row, const std::uint8_t* row_above, std::size_t width) {
     const auto cells_of = [this, row](std::size_t x) {
       return cells_.data() + row[x] * std::size_t{kGreyLevels};
     };
-    ++cells_of(0)[above[0]][kUp];
+    ++cells_of(0)[row_above[0]][kUp];
     ++cells_of(0)[row[1]][kRight];
-    ++cells_of(0)[above[1]][kRightUp];
+    ++cells_of(0)[row_above[1]][kRightUp];
     for (std::size_t x = 1; x + 1 < width; ++x) {
       GlcmCell* const cells = cells_of(x);
       ++cells[row[x + 1]][kRight];
-      ++cells[above[x + 1]][kRightUp];
-      ++cells[above[x]][kUp];
-      ++cells[above[x - 1]][kLeftUp];
+      ++cells[row_above[x + 1]][kRightUp];
+      ++cells[row_above[x]][kUp];
+      ++cells[row_above[x - 1]][kLeftUp];
     }
     const std::size_t last = width - 1;
-    ++cells_of(last)[above[last]][kUp];
-    ++cells_of(last)[above[last - 1]][kLeftUp];
+    ++cells_of(last)[row_above[last]][kUp];
+    ++cells_of(last)[row_above[last - 1]][kLeftUp];
   }
 
   std::vector<GlcmCell> cells_;
 };
 
-/// n ln n. Most counts are small, and read from a table.
+/// n ln n, from a table for small n.
 class NLogN {
  public:
   NLogN() {
-    for (std::size_t n = 1; n < kTabulated; ++n) table_[n] = direct(n);
+    for (std::size_t n = 1; n < kTabulated; ++n) table_[n] = compute(n);
   }
   [[nodiscard]] double operator()(std::uint64_t n) const {
-    return n < kTabulated ? table_[n] : direct(n);
+    return n < kTabulated ? table_[n] : compute(n);
   }
 
  private:
   static constexpr std::size_t kTabulated = 2048;
-  static double direct(std::uint64_t n) {
+  static double compute(std::uint64_t n) {
     const auto real = static_cast<double>(n);
     return real * std::log(real);
   }
@@ -116,8 +115,8 @@ const NLogN& n_log_n_table() {
   return table;
 }
 
-/// The sums over the symmetric matrix of one direction from which the statistics follow; all but
-/// the last are whole numbers. Each unordered pair of levels counts once.
+/// Sums over the symmetric matrix of one direction, from which the statistics are computed. Each
+/// unordered pair of levels counts once.
 struct Sums {
   std::array<std::uint64_t, kGreyLevels> marginal{};  ///< row sums of the symmetric matrix
   std::uint64_t squares = 0;           ///< of the unordered counts of different levels
@@ -126,13 +125,13 @@ struct Sums {
   double n_log_n = 0.0;                ///< over all entries of the symmetric matrix
 };
 
-/// Adds a pair of different levels that are neighbours `count` times.
+/// Adds a pair of different levels that occurs `count` times.
 void add_pair(Sums& sums, int i, int j, std::uint64_t count, const NLogN& n_log_n) {
-  const auto gap = static_cast<std::uint64_t>((i - j) * (i - j));
+  const auto squared_difference = static_cast<std::uint64_t>((i - j) * (i - j));
   sums.marginal[static_cast<std::size_t>(i)] += count;
   sums.marginal[static_cast<std::size_t>(j)] += count;
   sums.squares += count * count;
-  sums.distance += gap * count;
+  sums.distance += squared_difference * count;
   sums.n_log_n += 2 * n_log_n(count);
 }
 
@@ -143,10 +142,10 @@ void add_diagonal(Sums& sums, int i, std::uint64_t count, const NLogN& n_log_n) 
   sums.n_log_n += n_log_n(2 * count);
 }
 
-bool empty(const GlcmCell& a, const GlcmCell& b) {
-  std::uint32_t any = 0;
-  for (std::size_t d = 0; d < a.size(); ++d) any |= a[d] | b[d];
-  return any == 0;
+bool are_empty(const GlcmCell& a, const GlcmCell& b) {
+  std::uint32_t bits = 0;
+  for (std::size_t d = 0; d < a.size(); ++d) bits |= a[d] | b[d];
+  return bits == 0;
 }
 
 std::vector<Sums> sums_of(const GlcmCounts& counts) {
@@ -157,18 +156,18 @@ std::vector<Sums> sums_of(const GlcmCounts& counts) {
       add_diagonal(sums[d], i, counts.at(i, i)[d], n_log_n);
     }
     for (int j = i + 1; j < kGreyLevels; ++j) {
-      const GlcmCell& there = counts.at(i, j);
-      const GlcmCell& back = counts.at(j, i);
-      if (empty(there, back)) continue;
+      const GlcmCell& forward = counts.at(i, j);
+      const GlcmCell& backward = counts.at(j, i);
+      if (are_empty(forward, backward)) continue;
       for (std::size_t d = 0; d < sums.size(); ++d) {
-        add_pair(sums[d], i, j, std::uint64_t{there[d]} + back[d], n_log_n);
+        add_pair(sums[d], i, j, std::uint64_t{forward[d]} + backward[d], n_log_n);
       }
     }
   }
   return sums;
 }
 
-/// The variance of one level of a pair; both have the same.
+/// The variance of either level of a pair.
 double variance_of(const std::array<std::uint64_t, kGreyLevels>& marginal, double total) {
   double mean = 0.0;
   for (std::size_t i = 0; i < marginal.size(); ++i) {
@@ -182,8 +181,7 @@ double variance_of(const std::array<std::uint64_t, kGreyLevels>& marginal, doubl
   return variance;
 }
 
-/// Follows from contrast = 2 variance - 2 covariance, as both levels of a pair have the same
-/// variance.
+/// Uses contrast = 2 variance - 2 covariance, because both levels of a pair have the same variance.
 double correlation_of(double contrast, const Sums& sums, double total) {
   const auto levels = std::count_if(sums.marginal.begin(), sums.marginal.end(),
                                     [](std::uint64_t count) { return count != 0; });

@@ -12,10 +12,10 @@ namespace touchtrial::engine {
 /// either order.
 struct GlcmStatistics {
   double angular_second_moment;  ///< sum of p^2, in (0, 1]; 1 for a flat image
-  double energy;                 ///< its square root; the paper's Table 1 calls it entropy
-  double entropy;                ///< -sum of p ln p, in nats; 0 for a flat image
-  double contrast;               ///< sum of (i - j)^2 p, in squared grey levels
-  double correlation;            ///< of i and j, in [-1, 1]; 1 if they do not vary
+  double energy;       ///< square root of the above; called entropy in the paper's Table 1
+  double entropy;      ///< -sum of p ln p, in nats; 0 for a flat image
+  double contrast;     ///< sum of (i - j)^2 p, in squared grey levels
+  double correlation;  ///< of i and j, in [-1, 1]; 1 if they do not vary
 };
 
 /// The offset from a pixel (y, x) to its neighbour (y + dy, x + dx); y points downwards.
@@ -25,15 +25,15 @@ struct GlcmOffset {
   int dx;
 };
 
-/// The directions of GlcmTable: one step right, right and up, up, left and up.
+/// The directions of GlcmTable: right, up right, up, up left.
 inline constexpr std::array<GlcmOffset, 4> kGlcmOffsets = {
     {{0, 0, 1}, {45, -1, 1}, {90, -1, 0}, {135, -1, -1}}};
 
 /// One entry for each of kGlcmOffsets.
 using GlcmTable = std::array<GlcmStatistics, 4>;
 
-/// The statistics of the symmetric matrix of 256 levels; only pairs inside the image count. The
-/// counts are exact, and the statistics are computed from them in double.
+/// Computes the statistics of the symmetric matrix of 256 levels from pairs inside the image.
+/// Counts are exact; statistics are in double.
 /// \param image  at least 2 x 2, so that every direction has a pair; below 2^32 pixels
 /// \throws std::invalid_argument for any other size
 /// Thread-safe. Needs 1 MB while it runs.

@@ -15,13 +15,13 @@
 namespace touchtrial::engine {
 namespace {
 
-constexpr double kMinCycles = 4.0;  // per shorter side
-constexpr double kHighest = 0.4;    // cycles per pixel
+constexpr double kMinCycles = 4.0;     // per shorter side
+constexpr double kMaxFrequency = 0.4;  // cycles per pixel
 constexpr double kRingsPerOctave = 4.0;
-/// A smaller share of the strongest ring's power is rounding.
-constexpr double kRounding = 1e-20;
+/// A ring with a smaller share of the strongest ring's power contains only rounding errors.
+constexpr double kMinPowerShare = 1e-20;
 
-/// The coefficients of the spectrum in one range of radial frequencies.
+/// Sums over the coefficients in one range of radial frequencies.
 struct Ring {
   double log_frequency = 0.0;  ///< sum over the coefficients
   double power = 0.0;          ///< sum over the coefficients
@@ -32,18 +32,19 @@ std::vector<Ring> rings_of(const GreyImage& image) {
   const int height = image.height();
   const int width = image.width();
   RealFft<double> fft(height, width);
-  load_faded(image, fft);
+  load_windowed(image, fft);
   fft.forward();
-  const double lowest = kMinCycles / std::min(height, width);
-  std::vector<Ring> rings(static_cast<std::size_t>(kRingsPerOctave * std::log2(kHighest / lowest)) +
-                          1);
+  const double min_frequency = kMinCycles / std::min(height, width);
+  std::vector<Ring> rings(
+      static_cast<std::size_t>(kRingsPerOctave * std::log2(kMaxFrequency / min_frequency)) + 1);
   const int columns = width / 2 + 1;
   for (int row = 0; row < height; ++row) {
     const double fy = static_cast<double>(std::min(row, height - row)) / height;
     for (int column = 0; column < columns; ++column) {
       const double frequency = std::hypot(fy, static_cast<double>(column) / width);
-      if (frequency < lowest || frequency > kHighest) continue;
-      Ring& ring = rings[static_cast<std::size_t>(kRingsPerOctave * std::log2(frequency / lowest))];
+      if (frequency < min_frequency || frequency > kMaxFrequency) continue;
+      Ring& ring =
+          rings[static_cast<std::size_t>(kRingsPerOctave * std::log2(frequency / min_frequency))];
       ring.log_frequency += std::log(frequency);
       ring.power += std::norm(fft.spectrum()[static_cast<std::size_t>(row) * columns + column]);
       ++ring.coefficients;
@@ -77,11 +78,11 @@ double spectrum_slope(const GreyImage& image) {
   }
   if (is_flat(image)) return 0.0;
   const std::vector<Ring> rings = rings_of(image);
-  double strongest = 0.0;
-  for (const Ring& ring : rings) strongest = std::max(strongest, ring.power);
+  double max_power = 0.0;
+  for (const Ring& ring : rings) max_power = std::max(max_power, ring.power);
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
   for (const Ring& ring : rings) {
-    if (ring.coefficients == 0 || ring.power <= kRounding * strongest) continue;
+    if (ring.coefficients == 0 || ring.power <= kMinPowerShare * max_power) continue;
     const double frequency = ring.log_frequency / ring.coefficients;
     const double power = std::log(ring.power / ring.coefficients);
     n += 1.0;

@@ -6,7 +6,7 @@
 
 namespace touchtrial::engine {
 
-/// The entropy of the histogram with 256 bins, in nats: 0 for a constant image, at most ln 256.
+/// The entropy of the 256-bin histogram, in nats: 0 for a constant image, at most ln 256.
 /// \throws std::invalid_argument if the image is empty
 /// Thread-safe.
 [[nodiscard]] double entropy(const GreyImage& image);
@@ -17,7 +17,7 @@ inline constexpr int kSlopeSmallestSide = 32;
 /// The slope of log power over log radial frequency: about -2 for photographs of scenes, 0 for
 /// white noise. The image minus its mean is multiplied by a Hann window. Its power is averaged over
 /// rings of a quarter of an octave, from 4 cycles per shorter side to 0.4 cycles per pixel, and a
-/// line is fitted by least squares to the rings that have coefficients and power.
+/// line is fitted by least squares to the rings with coefficients and power.
 /// \return 0 for a flat image
 /// \throws std::invalid_argument if a side is below kSlopeSmallestSide
 /// Thread-safe.

@@ -16,10 +16,10 @@ struct MsSsim {
   double wang;  ///< exponents 0.0448, 0.2856, 0.3001, 0.2363, 0.1333; a negative mean counts as 0
 };
 
-/// From scale to scale the images are halved by the means of 2 x 2 blocks; an odd last row or
-/// column is repeated. Both numbers are exactly 1 for an image and itself, and symmetric in the
-/// arguments. Real is the precision of the sums, float or double. Float stays within 2e-7 of double
-/// on textures and within 2e-5 on any pair of images, and takes half the time.
+/// Each scale halves the images by means of 2 x 2 blocks; an odd last row or column is repeated.
+/// Both numbers are exactly 1 for an image and itself, and symmetric in the arguments. Real is the
+/// precision of the sums, float or double. Float stays within 2e-7 of double on textures and within
+/// 2e-5 on any pair of images, and takes half the time.
 /// \throws std::invalid_argument if the sizes differ or a side is below kMsSsimSmallestSide
 /// Thread-safe. Needs memory for 5/8 of a Real per pixel.
 template <typename Real>

@@ -28,7 +28,7 @@ constexpr double kC1 = (0.01 * 255) * (0.01 * 255);
 constexpr double kC2 = (0.03 * 255) * (0.03 * 255);
 constexpr int kMoments = 4;
 constexpr int kTileBytes = 512;
-/// The longest vector, in bytes: how far accesses may go beyond the end of a row of a tile.
+/// The longest vector, in bytes: accesses may exceed a row of a tile by this much.
 constexpr int kSlackBytes = 64;
 
 /// The Gaussian from its centre outwards; the centre and both wings sum to 1.
@@ -45,8 +45,8 @@ std::array<Real, kReach + 1> window_weights() {
   return normalised;
 }
 
-/// How many columns of the result are processed at a time, from top to bottom: the data of a tile
-/// stay in the first-level cache.
+/// The number of columns of the result processed at a time, so that a tile's data stay in the
+/// first-level cache.
 template <typename Real>
 constexpr int kTile = kTileBytes / static_cast<int>(sizeof(Real));
 
@@ -55,7 +55,7 @@ struct alignas(64) Workspace {
   static constexpr int kSlack = kSlackBytes / static_cast<int>(sizeof(Real));
   /// u and v of one row of the images.
   alignas(64) Real pair[2][kTile<Real> + 2 * kSlack];
-  /// u, v, u^2 and v^2, filtered along x, one behind the other. Row y is in slot y mod kTaps.
+  /// u, v, u^2 and v^2, filtered along x, in sequence. Row y is in slot y mod kTaps.
   alignas(64) Real filtered[kTaps][kMoments * kTile<Real>];
 };
 
@@ -116,55 +116,56 @@ HWY_INLINE hn::Vec<D> to_real(D d, hn::Vec<hn::Rebind<std::int32_t, D>> integers
   }
 }
 
-/// Loads u and v of the samples from `at` on.
+/// Loads u and v of the samples starting at `start`.
 template <class D>
-HWY_INLINE void load_pair(D d, const GreySource& source, std::size_t at, hn::Vec<D>& u,
+HWY_INLINE void load_pair(D d, const GreySource& source, std::size_t start, hn::Vec<D>& u,
                           hn::Vec<D>& v) {
   const hn::Rebind<std::uint8_t, D> bytes;
   const hn::Rebind<std::int32_t, D> integers;
-  const auto x = hn::PromoteTo(integers, hn::LoadU(bytes, source.x + at));
-  const auto y = hn::PromoteTo(integers, hn::LoadU(bytes, source.y + at));
+  const auto x = hn::PromoteTo(integers, hn::LoadU(bytes, source.x + start));
+  const auto y = hn::PromoteTo(integers, hn::LoadU(bytes, source.y + start));
   u = to_real(d, hn::Sub(hn::Add(x, y), hn::Set(integers, source.offsets.sum)));
   v = to_real(d, hn::Sub(hn::Sub(x, y), hn::Set(integers, source.offsets.difference)));
 }
 
 template <class D>
-HWY_INLINE void load_pair(D d, const RealSource<hn::TFromD<D>>& source, std::size_t at,
+HWY_INLINE void load_pair(D d, const RealSource<hn::TFromD<D>>& source, std::size_t start,
                           hn::Vec<D>& u, hn::Vec<D>& v) {
-  u = hn::LoadU(d, source.sum + at);
-  v = hn::LoadU(d, source.difference + at);
+  u = hn::LoadU(d, source.sum + start);
+  v = hn::LoadU(d, source.difference + start);
 }
 
 template <class D, class Source, typename Real = hn::TFromD<D>>
-HWY_INLINE void store_pair(D d, const Source& source, std::size_t at, int i,
+HWY_INLINE void store_pair(D d, const Source& source, std::size_t start, int i,
                            Workspace<Real>& work) {
   hn::Vec<D> u;
   hn::Vec<D> v;
-  load_pair(d, source, at, u, v);
+  load_pair(d, source, start, u, v);
   hn::StoreU(u, d, work.pair[0] + i);
   hn::StoreU(v, d, work.pair[1] + i);
 }
 
-/// Loads one row of the images, as far as the tile's windows reach.
+/// Loads the part of an image row that the tile's windows cover.
 template <class D, class Source, typename Real = hn::TFromD<D>>
 HWY_INLINE void load_row(D d, const Source& source, int y, Tile tile, Workspace<Real>& work) {
   const int lanes = static_cast<int>(hn::Lanes(d));
-  const int wanted = tile.width + 2 * kReach;
-  const int available = source.width - tile.x0;
+  const int needed_width = tile.width + 2 * kReach;
+  const int available_width = source.width - tile.x0;
   const std::size_t first = static_cast<std::size_t>(y) * static_cast<std::size_t>(source.width) +
                             static_cast<std::size_t>(tile.x0);
   int i = 0;
-  for (; i < wanted && i + lanes <= available; i += lanes) {
+  for (; i < needed_width && i + lanes <= available_width; i += lanes) {
     store_pair(d, source, first + static_cast<std::size_t>(i), i, work);
   }
-  const hn::CappedTag<Real, 1> one;
-  for (; i < wanted; ++i) store_pair(one, source, first + static_cast<std::size_t>(i), i, work);
+  const hn::CappedTag<Real, 1> single;
+  for (; i < needed_width; ++i)
+    store_pair(single, source, first + static_cast<std::size_t>(i), i, work);
 }
 
-/// The window's weighted sum of the rows that the taps point to, from the outermost pair inwards.
+/// The weighted sum of the rows in `taps`, from the outermost pair inwards.
 template <class D, typename Real = hn::TFromD<D>>
-HWY_INLINE hn::Vec<D> windowed(D d, const Real* HWY_RESTRICT weights, const Real* const* taps,
-                               int offset) {
+HWY_INLINE hn::Vec<D> window_sum(D d, const Real* HWY_RESTRICT weights, const Real* const* taps,
+                                 int offset) {
   auto sum = hn::Mul(hn::Set(d, weights[kReach]), hn::Add(hn::LoadU(d, taps[0] + offset),
                                                           hn::LoadU(d, taps[kTaps - 1] + offset)));
   for (int i = kReach - 1; i > 0; --i) {
@@ -175,10 +176,11 @@ HWY_INLINE hn::Vec<D> windowed(D d, const Real* HWY_RESTRICT weights, const Real
   return hn::MulAdd(hn::Set(d, weights[0]), hn::LoadU(d, taps[kReach] + offset), sum);
 }
 
-/// The window's weighted sums of a row's samples and of their squares, as windowed() forms them.
+/// The window's weighted sums of a row's samples and of their squares, added in the same order as
+/// in window_sum().
 template <class D, typename Real = hn::TFromD<D>>
-HWY_INLINE void windowed_moments(D d, const Real* HWY_RESTRICT weights, const Real* samples,
-                                 hn::Vec<D>& first, hn::Vec<D>& second) {
+HWY_INLINE void window_moments(D d, const Real* HWY_RESTRICT weights, const Real* samples,
+                               hn::Vec<D>& first, hn::Vec<D>& second) {
   first = second = hn::Zero(d);
   for (int i = kReach; i > 0; --i) {
     const auto weight = hn::Set(d, weights[i]);
@@ -202,14 +204,14 @@ HWY_INLINE void filter_row(D d, const Real* HWY_RESTRICT weights, Tile tile, int
     for (int p = 0; p < 2; ++p) {
       hn::Vec<D> first;
       hn::Vec<D> second;
-      windowed_moments(d, weights, work.pair[p] + x, first, second);
+      window_moments(d, weights, work.pair[p] + x, first, second);
       hn::Store(first, d, row + p * kTile<Real> + x);
       hn::Store(second, d, row + (p + 2) * kTile<Real> + x);
     }
   }
 }
 
-/// Half of the deficits of one vector of windows, or of the sum of several.
+/// Half of the deficits of one vector of windows, or a sum of them.
 template <class D>
 struct HalfDeficits {
   hn::Vec<D> structure;
@@ -219,7 +221,7 @@ struct HalfDeficits {
 /// Half of 1 - c s if the arguments are the variances of v and u; half of 1 - l if they are the
 /// squares of their means.
 template <class D>
-HWY_INLINE hn::Vec<D> share(D d, hn::Vec<D> difference, hn::Vec<D> sum, double constant) {
+HWY_INLINE hn::Vec<D> half_deficit(D d, hn::Vec<D> difference, hn::Vec<D> sum, double constant) {
   const auto total =
       hn::Add(hn::Add(sum, difference), hn::Set(d, static_cast<hn::TFromD<D>>(2 * constant)));
   return hn::Div(difference, total);
@@ -229,17 +231,17 @@ template <class D, bool kLuminance, typename Real = hn::TFromD<D>>
 HWY_INLINE HalfDeficits<D> deficits_at(D d, const Real* HWY_RESTRICT weights,
                                        const Real* const* rows, int x, PairOffsets offsets) {
   const auto zero = hn::Zero(d);
-  const auto u = windowed(d, weights, rows, x);
-  const auto v = windowed(d, weights, rows, x + kTile<Real>);
-  const auto uu = windowed(d, weights, rows, x + 2 * kTile<Real>);
-  const auto vv = windowed(d, weights, rows, x + 3 * kTile<Real>);
+  const auto u = window_sum(d, weights, rows, x);
+  const auto v = window_sum(d, weights, rows, x + kTile<Real>);
+  const auto uu = window_sum(d, weights, rows, x + 2 * kTile<Real>);
+  const auto vv = window_sum(d, weights, rows, x + 3 * kTile<Real>);
   const auto variance_u = hn::Max(hn::NegMulAdd(u, u, uu), zero);
   const auto variance_v = hn::Max(hn::NegMulAdd(v, v, vv), zero);
-  HalfDeficits<D> half{share(d, variance_v, variance_u, kC2), zero};
+  HalfDeficits<D> half{half_deficit(d, variance_v, variance_u, kC2), zero};
   if constexpr (kLuminance) {
     const auto sum = hn::Add(u, hn::Set(d, static_cast<Real>(offsets.sum)));
     const auto difference = hn::Add(v, hn::Set(d, static_cast<Real>(offsets.difference)));
-    half.luminance = share(d, hn::Mul(difference, difference), hn::Mul(sum, sum), kC1);
+    half.luminance = half_deficit(d, hn::Mul(difference, difference), hn::Mul(sum, sum), kC1);
   }
   return half;
 }
@@ -267,11 +269,11 @@ HWY_INLINE void add_row(D d, const Real* HWY_RESTRICT weights, const Real* const
     add_to(row, deficits_at<D, kLuminance>(d, weights, rows, x, offsets));
   }
   if (x < tile.width) {
-    const auto inside = hn::FirstN(d, static_cast<std::size_t>(tile.width - x));
-    HalfDeficits<D> rest = deficits_at<D, kLuminance>(d, weights, rows, x, offsets);
-    rest.structure = hn::IfThenElseZero(inside, rest.structure);
-    rest.luminance = hn::IfThenElseZero(inside, rest.luminance);
-    add_to(row, rest);
+    const auto is_inside = hn::FirstN(d, static_cast<std::size_t>(tile.width - x));
+    HalfDeficits<D> last = deficits_at<D, kLuminance>(d, weights, rows, x, offsets);
+    last.structure = hn::IfThenElseZero(is_inside, last.structure);
+    last.luminance = hn::IfThenElseZero(is_inside, last.luminance);
+    add_to(row, last);
   }
   sum.structure += 2 * total_of(d, row.structure);
   if constexpr (kLuminance) sum.luminance += 2 * total_of(d, row.luminance);
@@ -298,10 +300,10 @@ template <typename Real, bool kLuminance, class Source>
 HWY_INLINE MeanDeficits deficits_of(const Source& source) {
   const int windows_x = source.width - 2 * kReach;
   const int windows_y = source.height - 2 * kReach;
-  // Sums of tiles, added in their order: the same digits for any number of threads.
+  // Tiles are summed in order, so the result does not depend on the number of threads.
   std::vector<MeanDeficits> tiles(
       static_cast<std::size_t>((windows_x + kTile<Real> - 1) / kTile<Real>));
-  const bool is_large = std::int64_t{source.height} * source.width >= kThreadsFromPixels;
+  const bool is_large = std::int64_t{source.height} * source.width >= kMinParallelPixels;
   in_parallel(is_large ? 0 : 1, tiles.size(), [&](std::size_t i) HWY_ATTR {
     const int x0 = static_cast<int>(i) * kTile<Real>;
     tiles[i] =
@@ -322,16 +324,16 @@ HWY_INLINE MeanDeficits deficits_of(const Source& source, Luminance luminance) {
                                          : deficits_of<Real, false>(source);
 }
 
-MeanDeficits grey_float(const GreyPair& pair, Luminance luminance) {
+MeanDeficits grey_deficits_f32(const GreyPair& pair, Luminance luminance) {
   return deficits_of<float>(GreySource(pair), luminance);
 }
-MeanDeficits grey_double(const GreyPair& pair, Luminance luminance) {
+MeanDeficits grey_deficits_f64(const GreyPair& pair, Luminance luminance) {
   return deficits_of<double>(GreySource(pair), luminance);
 }
-MeanDeficits real_float(const SumDifference<float>& pair, Luminance luminance) {
+MeanDeficits real_deficits_f32(const SumDifference<float>& pair, Luminance luminance) {
   return deficits_of<float>(RealSource<float>(pair), luminance);
 }
-MeanDeficits real_double(const SumDifference<double>& pair, Luminance luminance) {
+MeanDeficits real_deficits_f64(const SumDifference<double>& pair, Luminance luminance) {
   return deficits_of<double>(RealSource<double>(pair), luminance);
 }
 
@@ -342,26 +344,26 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace touchtrial::engine {
-HWY_EXPORT(grey_float);
-HWY_EXPORT(grey_double);
-HWY_EXPORT(real_float);
-HWY_EXPORT(real_double);
+HWY_EXPORT(grey_deficits_f32);
+HWY_EXPORT(grey_deficits_f64);
+HWY_EXPORT(real_deficits_f32);
+HWY_EXPORT(real_deficits_f64);
 
 template <>
 MeanDeficits mean_deficits<float>(const GreyPair& pair, Luminance luminance) {
-  return HWY_DYNAMIC_DISPATCH(grey_float)(pair, luminance);
+  return HWY_DYNAMIC_DISPATCH(grey_deficits_f32)(pair, luminance);
 }
 template <>
 MeanDeficits mean_deficits<double>(const GreyPair& pair, Luminance luminance) {
-  return HWY_DYNAMIC_DISPATCH(grey_double)(pair, luminance);
+  return HWY_DYNAMIC_DISPATCH(grey_deficits_f64)(pair, luminance);
 }
 template <>
 MeanDeficits mean_deficits(const SumDifference<float>& pair, Luminance luminance) {
-  return HWY_DYNAMIC_DISPATCH(real_float)(pair, luminance);
+  return HWY_DYNAMIC_DISPATCH(real_deficits_f32)(pair, luminance);
 }
 template <>
 MeanDeficits mean_deficits(const SumDifference<double>& pair, Luminance luminance) {
-  return HWY_DYNAMIC_DISPATCH(real_double)(pair, luminance);
+  return HWY_DYNAMIC_DISPATCH(real_deficits_f64)(pair, luminance);
 }
 
 }  // namespace touchtrial::engine

@@ -1,4 +1,4 @@
-/// \file The loops of MS-SSIM over pixels, vectorised for every target.
+/// \file The pixel loops of MS-SSIM, vectorised for every target.
 ///
 /// With the sum u = x + y and the difference v = x - y of the two images, and with variances and
 /// means over a window,
@@ -13,7 +13,7 @@
 
 namespace touchtrial::engine {
 
-/// What was subtracted from u and v, in grey levels.
+/// The constants subtracted from u and v, in grey levels.
 struct PairOffsets {
   int sum = 0;
   int difference = 0;
@@ -26,8 +26,8 @@ struct GreyPair {
   PairOffsets offsets;
 };
 
-/// The pair with the rounded means of u and v as offsets.
-[[nodiscard]] GreyPair centred(const GreyImage& x, const GreyImage& y);
+/// A pair whose offsets are the rounded means of u and v.
+[[nodiscard]] GreyPair centred_pair(const GreyImage& x, const GreyImage& y);
 
 /// A further scale: u and v minus their offsets.
 template <typename Real>

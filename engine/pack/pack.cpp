@@ -76,12 +76,12 @@ MappedField map_field(const std::filesystem::path& path) {
 }
 
 const PackEntry& Pack::entry(const std::string& code) const {
-  const auto found = std::ranges::lower_bound(manifest_.entries, code, {}, &PackEntry::code);
-  if (found == manifest_.entries.end() || found->code != code) {
+  const auto match = std::ranges::lower_bound(manifest_.entries, code, {}, &PackEntry::code);
+  if (match == manifest_.entries.end() || match->code != code) {
     throw FileError(one_line((folder_ / kManifestName).string()) + ": /fields: has no field " +
                     one_line(code) + "; use the pack and key that were made together");
   }
-  return *found;
+  return *match;
 }
 
 MappedField Pack::map(const std::string& code) const {
@@ -89,8 +89,8 @@ MappedField Pack::map(const std::string& code) const {
 }
 
 bool Pack::is_intact(const std::string& code) const {
-  const PackEntry& known = entry(code);
-  return sha256_of_file(field_path(folder_, known.code)) == known.checksum;
+  const PackEntry& expected = entry(code);
+  return sha256_of_file(field_path(folder_, expected.code)) == expected.checksum;
 }
 
 }  // namespace touchtrial::engine

@@ -24,7 +24,7 @@
 namespace touchtrial::engine {
 namespace {
 
-/// \param message  with the file
+/// \param message  starts with the file's path
 [[noreturn]] void refuse(const std::string& message) {
   throw FileError(message + "; copy the pack again or rebuild it with `touchtrial prepare`");
 }
@@ -34,7 +34,7 @@ namespace {
 }
 
 static_assert(std::endian::native == std::endian::little,
-              "fields are written and mapped in the layout that they have in memory");
+              "fields are written and mapped in memory layout");
 constexpr std::uint32_t kFieldVersion = 3;
 constexpr std::int64_t kListVersion = 5;
 
@@ -58,7 +58,7 @@ struct Header {
 };
 static_assert(sizeof(Header) == 64, "heights start on a cache line");
 
-bool is_pitch(double pitch_mm) {
+bool is_valid_pitch(double pitch_mm) {
   return std::isfinite(pitch_mm) && pitch_mm > 0.0;
 }
 
@@ -75,7 +75,7 @@ Header checked_header(ByteView file, const std::filesystem::path& path) {
     refuse(path, "has the unknown sample layout " +
                      std::to_string(static_cast<std::uint32_t>(header.layout)));
   }
-  if (!is_pitch(header.pitch_mm)) refuse(path, "has a pitch that is not a finite number > 0");
+  if (!is_valid_pitch(header.pitch_mm)) refuse(path, "has a pitch that is not a finite number > 0");
   if (!std::isfinite(header.highest))
     refuse(path, "has a highest point that is not a finite number");
   const bool is_odd = header.neighbourhood % 2 == 1;
@@ -90,7 +90,7 @@ Header checked_header(ByteView file, const std::filesystem::path& path) {
 
 Header header_for(FieldView field) {
   const PlaneGeometry& geometry = field.geometry;
-  if (geometry.height_px < 1 || geometry.width_px < 1 || !is_pitch(geometry.pitch_mm)) {
+  if (geometry.height_px < 1 || geometry.width_px < 1 || !is_valid_pitch(geometry.pitch_mm)) {
     throw std::invalid_argument("encode_field: the field has no size or no pitch");
   }
   Header header;
@@ -102,8 +102,8 @@ Header header_for(FieldView field) {
   if (pixels > kMaxImagePixels || field.heights.size() != static_cast<std::size_t>(pixels)) {
     throw std::invalid_argument("encode_field: the heights do not fill the geometry");
   }
-  if (!field.other_slopes.empty()) {
-    throw std::invalid_argument("encode_field: a sum of fields has no file");
+  if (!field.slope_heights.empty()) {
+    throw std::invalid_argument("encode_field: a sum of fields cannot be encoded");
   }
   header.height_px = static_cast<std::uint32_t>(geometry.height_px);
   header.width_px = static_cast<std::uint32_t>(geometry.width_px);
@@ -270,10 +270,10 @@ std::string manifest_to_json(PackManifest manifest) {
 PackManifest manifest_from_json(std::string_view text, const std::filesystem::path& path) {
   try {
     PackManifest manifest = read_manifest_json(parse_strict_json(text, path.string()));
-    if (manifest_to_json(manifest) != text) refuse(path, "is altered since it was written");
+    if (manifest_to_json(manifest) != text) refuse(path, "was altered after it was written");
     return manifest;
   } catch (const StudyError& error) {
-    // Omits the JSON reader's remedies, which are for files written by people.
+    // Omits the JSON reader's remedies, which are for hand-written files.
     const std::string message = error.what();
     refuse(message.substr(0, message.find("; ", one_line(path.string()).size())));
   }

@@ -12,7 +12,7 @@
 namespace touchtrial::engine {
 namespace {
 
-/// Resolution of a feature: it prevents equal examples from making a class infinitely narrow.
+/// The resolution of a feature, so that equal examples do not make a class infinitely narrow.
 constexpr double kResolution = 1e-3;
 
 /// A square matrix, row-major.
@@ -26,7 +26,7 @@ struct Matrix {
 };
 
 void check_noise(FeltNoise noise) {
-  for (const double deviation : {noise.own, noise.common}) {
+  for (const double deviation : {noise.independent, noise.common}) {
     if (!std::isfinite(deviation) || deviation < 0.0) {
       throw std::invalid_argument("FeltClassifier: noise must be a finite number >= 0");
     }
@@ -42,16 +42,16 @@ void check(std::span<const FeltExample> examples) {
   for (const FeltExample& example : examples) {
     if (example.label < 0 || !all_finite(example.features) ||
         example.features.size() != examples.front().features.size()) {
-      throw std::invalid_argument("FeltClassifier: an example's label or features are impossible");
+      throw std::invalid_argument("FeltClassifier: an example's label or features are invalid");
     }
   }
 }
 
 std::vector<std::vector<double>> means_by_label(std::span<const FeltExample> examples) {
-  int last = 0;
-  for (const FeltExample& example : examples) last = std::max(last, example.label);
+  int max_label = 0;
+  for (const FeltExample& example : examples) max_label = std::max(max_label, example.label);
   // Every label needs an example: with more labels than examples, one has none.
-  const auto labels = static_cast<std::size_t>(last) + 1;
+  const auto labels = static_cast<std::size_t>(max_label) + 1;
   if (labels > examples.size()) throw std::invalid_argument("FeltClassifier: a label is missing");
   std::vector<std::vector<double>> sums(labels,
                                         std::vector<double>(examples.front().features.size(), 0.0));
@@ -68,8 +68,8 @@ std::vector<std::vector<double>> means_by_label(std::span<const FeltExample> exa
   return sums;
 }
 
-Matrix scatter_within(std::span<const FeltExample> examples,
-                      const std::vector<std::vector<double>>& means) {
+Matrix scatter_within_labels(std::span<const FeltExample> examples,
+                             const std::vector<std::vector<double>>& means) {
   const std::size_t n = examples.front().features.size();
   Matrix scatter(n);
   for (const FeltExample& example : examples) {
@@ -83,7 +83,7 @@ Matrix scatter_within(std::span<const FeltExample> examples,
   return scatter;
 }
 
-/// The covariance of FeltClassifier.
+/// The covariance that FeltClassifier uses.
 /// \param freedom  degrees of freedom of the scatter within labels
 Matrix covariance_of(Matrix scatter, double freedom, FeltNoise noise) {
   const std::size_t n = scatter.size;
@@ -93,7 +93,7 @@ Matrix covariance_of(Matrix scatter, double freedom, FeltNoise noise) {
       scatter.at(i, j) *= (i == j ? 1.0 : off_diagonal) / std::max(freedom, 1.0);
       scatter.at(i, j) += noise.common * noise.common;
     }
-    scatter.at(i, i) += noise.own * noise.own + kResolution * kResolution;
+    scatter.at(i, i) += noise.independent * noise.independent + kResolution * kResolution;
   }
   return scatter;
 }
@@ -121,25 +121,25 @@ FeltStatistics::FeltStatistics(int labels, std::size_t features) : features_(fea
 
 void FeltStatistics::learn(int label, std::span<const double> features) {
   check(label, features);
-  const double before = counts_[label]++;
-  add_to_scatter(label, features, before / (before + 1.0));
+  const double previous_count = counts_[label]++;
+  add_to_scatter(label, features, previous_count / (previous_count + 1.0));
   double* mean = means_.data() + static_cast<std::size_t>(label) * features_;
-  for (std::size_t i = 0; i < features_; ++i) mean[i] += (features[i] - mean[i]) / (before + 1.0);
+  for (std::size_t i = 0; i < features_; ++i)
+    mean[i] += (features[i] - mean[i]) / (previous_count + 1.0);
 }
 
 void FeltStatistics::forget(int label, std::span<const double> features) {
   check(label, features);
   if (counts_[label] == 0) throw std::invalid_argument("FeltStatistics: nothing to forget");
-  const double left = --counts_[label];
+  const double remaining_count = --counts_[label];
   double* mean = means_.data() + static_cast<std::size_t>(label) * features_;
-  if (left == 0.0) {
+  if (remaining_count == 0.0) {
     std::fill_n(mean, features_, 0.0);
     return;
   }
-  // From the mean without the example, the deviation has the same direction: only its scale
-  // differs.
-  add_to_scatter(label, features, -(left + 1.0) / left);
-  for (std::size_t i = 0; i < features_; ++i) mean[i] -= (features[i] - mean[i]) / left;
+  // The deviation from the mean without the example has the same direction and another scale.
+  add_to_scatter(label, features, -(remaining_count + 1.0) / remaining_count);
+  for (std::size_t i = 0; i < features_; ++i) mean[i] -= (features[i] - mean[i]) / remaining_count;
 }
 
 int FeltStatistics::degrees_of_freedom() const noexcept {
@@ -154,16 +154,16 @@ std::span<const double> FeltStatistics::mean(int label) const noexcept {
 
 void FeltStatistics::check(int label, std::span<const double> features) const {
   if (label < 0 || label >= labels() || features.size() != features_ || !all_finite(features)) {
-    throw std::invalid_argument("FeltStatistics: an example's label or features are impossible");
+    throw std::invalid_argument("FeltStatistics: an example's label or features are invalid");
   }
 }
 
 void FeltStatistics::add_to_scatter(int label, std::span<const double> features, double weight) {
-  const std::span<const double> at = mean(label);
+  const std::span<const double> centre = mean(label);
   for (std::size_t i = 0; i < features_; ++i) {
-    const double scaled = weight * (features[i] - at[i]);
+    const double weighted = weight * (features[i] - centre[i]);
     for (std::size_t j = 0; j < features_; ++j) {
-      scatter_[i * features_ + j] += scaled * (features[j] - at[j]);
+      scatter_[i * features_ + j] += weighted * (features[j] - centre[j]);
     }
   }
 }
@@ -174,8 +174,8 @@ FeltClassifier::FeltClassifier(std::span<const FeltExample> examples, FeltNoise 
   dimensions_ = examples.front().features.size();
   std::vector<std::vector<double>> means = means_by_label(examples);
   const auto freedom = static_cast<double>(examples.size() - means.size());
-  Matrix covariance = covariance_of(scatter_within(examples, means), freedom, noise);
-  settle(std::move(covariance.values), std::move(means));
+  Matrix covariance = covariance_of(scatter_within_labels(examples, means), freedom, noise);
+  initialise(std::move(covariance.values), std::move(means));
 }
 
 FeltClassifier::FeltClassifier(const FeltStatistics& statistics, FeltNoise noise)
@@ -189,11 +189,11 @@ FeltClassifier::FeltClassifier(const FeltStatistics& statistics, FeltNoise noise
   scatter.values.assign(statistics.scatter().begin(), statistics.scatter().end());
   const double freedom = statistics.degrees_of_freedom();
   Matrix covariance = covariance_of(std::move(scatter), freedom, noise);
-  settle(std::move(covariance.values), std::move(means));
+  initialise(std::move(covariance.values), std::move(means));
 }
 
-void FeltClassifier::settle(std::vector<double> covariance,
-                            std::vector<std::vector<double>> means) {
+void FeltClassifier::initialise(std::vector<double> covariance,
+                                std::vector<std::vector<double>> means) {
   Matrix within(dimensions_);
   within.values = std::move(covariance);
   static_cast<void>(factorise(within.values, dimensions_));
@@ -202,21 +202,21 @@ void FeltClassifier::settle(std::vector<double> covariance,
   factor_ = std::move(within.values);
   means_ = std::move(means);
   for (std::vector<double>& mean : means_) {
-    if (!mean.empty()) mean = whitened(mean);
+    if (!mean.empty()) mean = whiten(mean);
   }
 }
 
-std::vector<double> FeltClassifier::whitened(std::span<const double> features) const {
-  std::vector<double> white(features.begin(), features.end());
-  solve_lower(factor_, white);
-  return white;
+std::vector<double> FeltClassifier::whiten(std::span<const double> features) const {
+  std::vector<double> whitened(features.begin(), features.end());
+  solve_lower(factor_, whitened);
+  return whitened;
 }
 
 std::vector<double> FeltClassifier::log_likelihoods(std::span<const double> features) const {
   if (features.size() != dimensions_) {
-    throw std::invalid_argument("FeltClassifier: the examples have another number of features");
+    throw std::invalid_argument("FeltClassifier: the number of features differs from the examples");
   }
-  const std::vector<double> white = whitened(features);
+  const std::vector<double> whitened = whiten(features);
   std::vector<double> logs;
   for (const std::vector<double>& mean : means_) {
     if (mean.empty()) {
@@ -225,7 +225,7 @@ std::vector<double> FeltClassifier::log_likelihoods(std::span<const double> feat
     }
     double squares = 0.0;
     for (std::size_t i = 0; i < dimensions_; ++i) {
-      squares += (white[i] - mean[i]) * (white[i] - mean[i]);
+      squares += (whitened[i] - mean[i]) * (whitened[i] - mean[i]);
     }
     logs.push_back(log_peak_ - 0.5 * squares);
   }

@@ -1,5 +1,4 @@
-/// \file The intensities by which a hand distinguishes textures. Source: docs/method.md, "Felt
-/// features".
+/// \file The felt intensities that distinguish textures. Source: docs/method.md, "Felt features".
 #pragma once
 
 #include <array>
@@ -11,9 +10,9 @@ inline constexpr int kFeltBands = 5;
 inline constexpr double kMaxFeltMm = 16.0;
 /// Directions of lateral force: 0, 45, 90 and 135 degrees from the plane's x towards its y.
 inline constexpr int kFeltDirections = 4;
-/// Parts of the plane, three by three, row by row from the top left.
-inline constexpr int kFeltPartsASide = 3;
-inline constexpr int kFeltParts = kFeltPartsASide * kFeltPartsASide;
+/// Parts of the plane: a 3 x 3 grid, row by row from the top left.
+inline constexpr int kFeltPartsPerSide = 3;
+inline constexpr int kFeltParts = kFeltPartsPerSide * kFeltPartsPerSide;
 
 /// The index of the first feature of each kind.
 inline constexpr int kLateralBandsAt = 0;
@@ -22,9 +21,9 @@ inline constexpr int kDirectionsAt = kNormalBandsAt + kFeltBands;
 inline constexpr int kPartsAt = kDirectionsAt + kFeltDirections;
 inline constexpr int kFeltFeatures = kPartsAt + kFeltParts;
 
-/// Natural logarithms of root mean square forces in newtons, or of accelerations in thresholds: in
-/// the lateral bands, in the normal bands, in the lateral component along each direction (all
-/// bands), and laterally on each part of the plane (all bands). Doubling all adds ln 2 to each.
+/// Natural logarithms of root mean square forces in newtons, or of accelerations relative to their
+/// threshold: in the lateral bands, in the normal bands, in the lateral component along each
+/// direction (all bands), and laterally on each part of the plane (all bands).
 using FeltFeatures = std::array<double, kFeltFeatures>;
 
 }  // namespace touchtrial::engine

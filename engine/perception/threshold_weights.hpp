@@ -1,4 +1,4 @@
-/// \file Weights that scale a spectrum of the tip's acceleration to thresholds. Source:
+/// \file Weights that scale spectra of the tip's acceleration by the detection threshold. Source:
 /// docs/perception.md, "What is felt".
 #pragma once
 
@@ -8,16 +8,16 @@
 
 namespace touchtrial::engine {
 
-/// Weights of the bins of Welch's method in Hann windows, so that the weighted powers of the
-/// acceleration in any sine from 10 Hz to 0.4 of the rate sum to its power over that of a sine at
-/// the threshold, within 0.5 dB. The acceleration is one of samples: the second difference of
-/// places, which at 0.32 of the rate is 3 dB less than the true one. A sine's power spreads over
-/// four bins, and thresholds differ between them by up to 16 dB: the thresholds of the bins' own
-/// frequencies would be wrong by more. Below 10 Hz the acceleration counts as at 10 Hz. Computed
-/// once for each curve, window and rate; thread-safe.
+/// Weights of the bins of Welch's method with Hann windows. For any sine from 10 Hz to 0.4 of the
+/// rate, the weighted powers of the acceleration sum to its power relative to a sine at threshold,
+/// within 0.5 dB. Acceleration is the second difference of sampled positions; at 0.32 of the rate
+/// it is 3 dB below the true acceleration. A sine's power spreads over four bins whose thresholds
+/// differ by up to 16 dB, so thresholds at the bins' centre frequencies would be less accurate.
+/// Frequencies below 10 Hz have the threshold of 10 Hz. Computed once per curve, window and rate;
+/// thread-safe.
 /// \param window  samples, even, 64 to 65536
 /// \param rate_hz  of the samples, 100 or more
-/// \return by bin 0 .. window / 2, s^4/m^2, of one-sided powers; the first is 0
+/// \return weights of the one-sided powers in bins 0 .. window / 2, s^4/m^2; the first is 0
 /// \throws std::invalid_argument if window or rate is out of range
 [[nodiscard]] const std::vector<double>& threshold_weights(ThresholdCurve curve, int window,
                                                            double rate_hz);

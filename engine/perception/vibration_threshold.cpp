@@ -12,13 +12,14 @@ struct Point {
   double level_db;  ///< re 1 um peak
 };
 
-// At 10, 20 and 320 Hz as printed, at 40 to 160 Hz from the printed slope, at 500 Hz a guess.
+// Levels at 10, 20 and 320 Hz are printed, levels at 40 to 160 Hz follow the printed slope, and the
+// level at 500 Hz is an estimate.
 constexpr std::array kIsrar{Point{10.0, 28.3},  Point{20.0, 18.6},   Point{40.0, 4.5},
                             Point{80.0, -9.6},  Point{160.0, -23.7}, Point{320.0, -24.4},
                             Point{500.0, -18.0}};
-/// A level up to 30 Hz, and from there 12 dB less an octave up to 300 Hz.
-constexpr double kTenfoldOctaves = 3.321928094887362;
-constexpr std::array kTan{Point{30.0, 28.0}, Point{300.0, 28.0 - 12.0 * kTenfoldOctaves}};
+constexpr double kOctavesPerDecade = 3.321928094887362;
+/// The curve is constant up to 30 Hz and falls by 12 dB per octave up to 300 Hz.
+constexpr std::array kTan{Point{30.0, 28.0}, Point{300.0, 28.0 - 12.0 * kOctavesPerDecade}};
 
 std::span<const Point> points_of(ThresholdCurve curve) noexcept {
   if (curve == ThresholdCurve::israr_2006) return kIsrar;

@@ -1,5 +1,5 @@
-/// \file Published thresholds for vibrations of a held stylus. They were measured on other people,
-/// with steady vibrations of a hand at rest: active movement raises thresholds. Source:
+/// \file Published detection thresholds for vibrations of a held stylus. They were measured with
+/// steady vibrations of a resting hand; active movement raises thresholds. Source:
 /// docs/perception.md, "Two published curves".
 #pragma once
 
@@ -15,9 +15,9 @@ enum class ThresholdCurve {
 inline constexpr std::array kThresholdCurves{ThresholdCurve::israr_2006, ThresholdCurve::tan_1994};
 [[nodiscard]] std::string_view name_of(ThresholdCurve curve) noexcept;
 
-/// The detection threshold of a vibration, by a three-interval one-up three-down track.
-/// Straight lines on logarithmic axes between the published frequencies; below the lowest one (10
-/// and 30 Hz) and above the highest one (500 and 300 Hz) the displacement stays.
+/// The detection threshold of a vibration, measured by a three-interval one-up three-down
+/// staircase. Interpolates linearly on logarithmic axes between the published frequencies. Constant
+/// below the lowest (10 or 30 Hz) and above the highest (500 or 300 Hz).
 /// \param frequency_hz  > 0
 /// \return m, peak of a sine
 [[nodiscard]] double threshold_displacement_m(ThresholdCurve curve, double frequency_hz) noexcept;

@@ -15,7 +15,7 @@
 namespace touchtrial::engine {
 namespace {
 
-Bytes encoded(int height, int width, int channels, std::span<const std::uint8_t> samples) {
+Bytes encode_png(int height, int width, int channels, std::span<const std::uint8_t> samples) {
   try {
     return png_of_samples(height, width, channels, samples);
   } catch (const ImageFault&) {
@@ -23,15 +23,15 @@ Bytes encoded(int height, int width, int channels, std::span<const std::uint8_t>
   }
 }
 
-void require_pixels(bool empty, const char* who) {
-  if (empty) throw std::invalid_argument(std::string(who) + ": the image has no pixels");
+void require_pixels(bool empty, const char* caller) {
+  if (empty) throw std::invalid_argument(std::string(caller) + ": the image has no pixels");
 }
 
 }  // namespace
 
 Bytes png_bytes(const GreyImage& image) {
   require_pixels(image.empty(), "png_bytes");
-  return encoded(image.height(), image.width(), 1, image.samples());
+  return encode_png(image.height(), image.width(), 1, image.samples());
 }
 
 Bytes png_bytes(const ColourImage& image) {
@@ -41,21 +41,22 @@ Bytes png_bytes(const ColourImage& image) {
   for (const Rgb& pixel : image.samples()) {
     samples.insert(samples.end(), {pixel.red, pixel.green, pixel.blue});
   }
-  return encoded(image.height(), image.width(), 3, samples);
+  return encode_png(image.height(), image.width(), 3, samples);
 }
 
 GreyImage resized(const GreyImage& image, int height, int width) {
   require_pixels(image.empty(), "resized");
   if (height < 1 || width < 1) throw std::invalid_argument("resized: a side is below 1");
-  cv::Mat from(image.height(), image.width(), CV_64FC1);
-  for (int y = 0; y < image.height(); ++y) std::ranges::copy(image.row(y), from.ptr<double>(y));
+  cv::Mat input(image.height(), image.width(), CV_64FC1);
+  for (int y = 0; y < image.height(); ++y) std::ranges::copy(image.row(y), input.ptr<double>(y));
   const bool shrinks = height <= image.height() && width <= image.width();
-  cv::Mat to;
-  cv::resize(from, to, cv::Size(width, height), 0, 0, shrinks ? cv::INTER_AREA : cv::INTER_CUBIC);
+  cv::Mat output;
+  cv::resize(input, output, cv::Size(width, height), 0, 0,
+             shrinks ? cv::INTER_AREA : cv::INTER_CUBIC);
   GreyImage result(height, width);
   for (int y = 0; y < height; ++y) {
     std::ranges::transform(
-        std::span(to.ptr<double>(y), static_cast<std::size_t>(width)), result.row(y).begin(),
+        std::span(output.ptr<double>(y), static_cast<std::size_t>(width)), result.row(y).begin(),
         [](double grey) {
           return static_cast<std::uint8_t>(std::clamp(std::floor(grey + 0.5), 0.0, 255.0));
         });

@@ -18,13 +18,13 @@ struct Rgb {
 };
 using ColourImage = Plane<Rgb>;
 
-/// A whole 8-bit PNG file in memory. The same picture gives the same bytes on one machine.
+/// Encodes an 8-bit PNG file. The same picture gives the same bytes on one machine.
 /// \throws std::invalid_argument if the picture is empty
 /// \throws FileError if the picture is too large to be encoded
 [[nodiscard]] Bytes png_bytes(const GreyImage& image);
 [[nodiscard]] Bytes png_bytes(const ColourImage& image);
 
-/// Resizes a picture: by means of areas if it shrinks, else bicubically. Computes in double and
+/// Resizes a picture, by area averaging if it shrinks, else bicubically. Computes in double and
 /// rounds half up.
 /// \param height,width  >= 1
 /// \throws std::invalid_argument if the picture is empty or a side is below 1

@@ -1,4 +1,4 @@
-/// \file The tangential force as arrows on the texture it comes from (paper Fig. 4).
+/// \file Draws the tangential force as arrows on its texture (paper Fig. 4).
 #pragma once
 
 #include "core/plane.hpp"
@@ -9,17 +9,17 @@
 
 namespace touchtrial::engine {
 
-/// The side of the enlarged patch in pixels; less if the texture is smaller.
+/// The side of the enlarged patch in pixels; smaller textures are enlarged whole.
 inline constexpr int kArrowPatchSide_px = 24;
 
 /// The part of a texture whose forces are drawn.
 struct ArrowPatch {
-  int y = 0;  ///< of its first row and column, pixels
-  int x = 0;
+  int y = 0;  ///< first row, pixels
+  int x = 0;  ///< first column, pixels
   int height = 0;
   int width = 0;
-  /// The force of an arrow that is as long as a pixel of the texture is wide, in grey levels per
-  /// pixel; 0 if there is no force.
+  /// The force whose arrow is as long as one texture pixel, in grey levels per pixel; 0 if there is
+  /// no force.
   double force_of_unit_arrow = 0.0;
 };
 
@@ -29,8 +29,8 @@ struct ArrowPatch {
 [[nodiscard]] ArrowPatch strongest_patch(const ForceField<double>& force);
 
 /// A patch of a texture, enlarged to fill a square, with an arrow for the force at each pixel. A
-/// patch that is not square is centred on white. The middle of an arrow is at the centre of its
-/// pixel; its length is proportional to the force.
+/// patch that is not square is centred on white. Arrows are centred on their pixels, with lengths
+/// proportional to the force.
 /// \param texture  8-bit picture of the same shape as the field, at least 1 x 1
 /// \param patch  within the texture
 /// \param side_px  of the square, >= 1

@@ -14,32 +14,33 @@ namespace {
 
 constexpr double kPole = -0.26794919243112270647;  // sqrt 3 - 2
 constexpr double kGain = 6.0;                      // (1 - pole) (1 - 1 / pole)
-constexpr double kMaxPx = 1 << 29;                 // whole pixels still fit an int
-constexpr double kNegligible = 1e-20;              // of a power of the pole, relative to 1
+constexpr double kMaxPx = 1 << 29;                 // so that pixel indices fit an int
+constexpr double kNegligible = 1e-20;              // smaller powers of the pole are ignored
 
-/// A row of a plane, or all its columns, which are filtered together.
+/// A row of a plane, or all its columns, filtered together.
 struct Lines {
   double* first;
   int count;         ///< entries along the filter
   std::size_t step;  ///< from one entry to the next, samples
-  int side_by_side;  ///< parallel lines, one sample apart
+  int parallel;      ///< number of parallel lines, one sample apart
 
   [[nodiscard]] double* at(int i) const { return first + static_cast<std::size_t>(i) * step; }
 };
 
-/// to += factor * from, for all lines.
-void add(const Lines& lines, double* to, double factor, const double* from) {
-  for (int j = 0; j < lines.side_by_side; ++j) to[j] += factor * from[j];
+/// target += factor * source, for all lines.
+void add(const Lines& lines, double* target, double factor, const double* source) {
+  for (int j = 0; j < lines.parallel; ++j) target[j] += factor * source[j];
 }
 
 void scale(const Lines& lines, double* entries, double factor) {
-  for (int j = 0; j < lines.side_by_side; ++j) entries[j] *= factor;
+  for (int j = 0; j < lines.parallel; ++j) entries[j] *= factor;
 }
 
-/// The causal filter's state before the first sample of the endlessly mirrored sequence: the sum
-/// over one period, s_0 .. s_(n-1) s_(n-1) .. s_0, weighted by pole^i, divided by 1 - pole^(2n).
+/// Computes the causal filter's state before the first sample of the endlessly mirrored sequence:
+/// the sum over one period, s_0 .. s_(n-1) s_(n-1) .. s_0, weighted by pole^i, divided by 1 -
+/// pole^(2n).
 void start_causal(const Lines& lines, std::vector<double>& state) {
-  state.assign(static_cast<std::size_t>(lines.side_by_side), 0.0);
+  state.assign(static_cast<std::size_t>(lines.parallel), 0.0);
   const double end = std::pow(kPole, lines.count);
   double power = kPole;
   for (int i = 0; i < lines.count && std::abs(power) > kNegligible; ++i) {
@@ -69,7 +70,7 @@ Plane<double> cubic_spline_coefficients(Plane<double> samples) {
   const int width = samples.width();
   const auto stride = static_cast<std::size_t>(width);
   double* first = samples.samples().data();
-  // Without its level, which costs no digits, a constant plane stays exactly constant.
+  // Subtracting a level loses no digits and keeps a constant plane exactly constant.
   const double level = *first;
   for (double& sample : samples.samples()) sample -= level;
   std::vector<double> state;
@@ -92,15 +93,16 @@ PatchSums spline_at(std::span<const float> coefficients, int height_px, int widt
   const double top = std::floor(y);
   const int column = static_cast<int>(left) - 1;
   const int row = static_cast<int>(top) - 1;
-  std::array<float, 16> mirrored;
+  std::array<float, 16> mirrored_patch;
   for (int dy = 0; dy < 4; ++dy) {
-    const auto at_row = static_cast<std::size_t>(symmetric_index(row + dy, height_px));
+    const auto row_index = static_cast<std::size_t>(symmetric_index(row + dy, height_px));
     for (int dx = 0; dx < 4; ++dx) {
-      const auto at_column = static_cast<std::size_t>(symmetric_index(column + dx, width_px));
-      mirrored[4 * dy + dx] = coefficients[at_row * static_cast<std::size_t>(width_px) + at_column];
+      const auto column_index = static_cast<std::size_t>(symmetric_index(column + dx, width_px));
+      mirrored_patch[4 * dy + dx] =
+          coefficients[row_index * static_cast<std::size_t>(width_px) + column_index];
     }
   }
-  return sum(mirrored.data(), 4, x - left, y - top);
+  return sum(mirrored_patch.data(), 4, x - left, y - top);
 }
 
 }  // namespace touchtrial::engine

@@ -10,17 +10,17 @@
 
 namespace touchtrial::engine {
 
-/// Coefficients of the spline that takes each sample's value at its pixel centre, under half-sample
-/// symmetric extension. Recursive filtering, exact to double rounding; the coefficients of a
-/// constant plane are the plane itself. Thread-safe. Cost: some 5 ns a pixel.
+/// Coefficients of the spline that interpolates the samples at their pixel centres, with
+/// half-sample symmetric extension. Uses recursive filtering, exact to double rounding; a constant
+/// plane is its own coefficients. Thread-safe. Cost: about 5 ns per pixel.
 /// \param samples  at least 1 x 1, finite, any unit
 [[nodiscard]] Plane<double> cubic_spline_coefficients(Plane<double> samples);
 
 /// The spline's value and its gradient at a point in continuous pixel coordinates (pixel centres
-/// are whole numbers), mirrored beyond the edges. Reads 16 coefficients. Neither allocates nor
-/// locks once spline_sum has been called.
+/// are whole numbers), mirrored beyond the edges. Reads 16 coefficients. After the first call of
+/// spline_sum() it neither allocates nor locks.
 /// \param coefficients  row-major, height_px x width_px, each >= 1
-/// \param x_px,y_px  not NaN; beyond the outer pixels clamped to a magnitude of 2^29
+/// \param x_px,y_px  not NaN; clamped to a magnitude of 2^29
 /// \throws Error as spline_sum
 [[nodiscard]] PatchSums spline_at(std::span<const float> coefficients, int height_px, int width_px,
                                   double x_px, double y_px);

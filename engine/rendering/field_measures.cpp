@@ -13,24 +13,24 @@
 namespace touchtrial::engine {
 namespace {
 
-/// A 99th percentile below this share of the maximum comes from where a filter or spline fades out.
+/// A 99th percentile below this share of the maximum comes from filter residues.
 constexpr double kMinShareOfMaximum = 1e-3;
-constexpr double kRoundingOfRadii = 1e-9;  // relative
+constexpr double kRadiusTolerance = 1e-9;  // relative
 
 constexpr double square(double value) noexcept {
   return value * value;
 }
 
-/// Root mean square over all samples, given the square of each.
+/// Root mean square over all samples.
 template <typename SquareOf>
-double root_mean(SampledView field, SquareOf square_of) noexcept {
+double root_mean_square(SampledView field, SquareOf square_of) noexcept {
   if (field.samples.empty()) return 0.0;
   double sum = 0.0;
   for (const FieldSample& sample : field.samples) sum += square_of(sample);
   return std::sqrt(sum / static_cast<double>(field.samples.size()));
 }
 
-/// Scale * sqrt(squares_at(pixel, width)) / (2 pitch) for every pixel that has all four neighbours.
+/// Scale * sqrt(squares_at(pixel, width)) / (2 pitch) for every pixel with four neighbours.
 template <typename SquaresAt>
 std::vector<float> interior_norms(SampledView field, double scale, SquaresAt squares_at) {
   const int height = field.geometry.height_px;
@@ -39,58 +39,59 @@ std::vector<float> interior_norms(SampledView field, double scale, SquaresAt squ
   const double per_mm = scale / (2.0 * field.geometry.pitch_mm);
   std::vector<float> norms(static_cast<std::size_t>(height - 2) *
                            static_cast<std::size_t>(width - 2));
-  float* to = norms.data();
+  float* output = norms.data();
   for (int y = 1; y < height - 1; ++y) {
     const FieldSample* row = field.samples.data() + static_cast<std::size_t>(y) * width;
     for (int x = 1; x < width - 1; ++x) {
-      *to++ = static_cast<float>(per_mm * std::sqrt(squares_at(row + x, width)));
+      *output++ = static_cast<float>(per_mm * std::sqrt(squares_at(row + x, width)));
     }
   }
   return norms;
 }
 
-/// squared_step(left, right) + squared_step(above, below) under the root.
+/// interior_norms() of squared_step(left, right) + squared_step(above, below).
 template <typename SquaredStep>
 std::vector<float> central_differences(SampledView field, double scale, SquaredStep squared_step) {
-  return interior_norms(field, scale, [=](const FieldSample* at, int width) {
-    return squared_step(at[-1], at[1]) + squared_step(at[-width], at[width]);
+  return interior_norms(field, scale, [=](const FieldSample* pixel, int width) {
+    return squared_step(pixel[-1], pixel[1]) + squared_step(pixel[-width], pixel[width]);
   });
 }
 
-/// With J the Jacobian of the whole F_T and P the outer product of F_T and the share's gradient,
-/// the force at a share s of the ramp has the Jacobian s J + P along the plane, and F_T * per_mm in
-/// depth. The norm is convex in s, so it is largest at an end of the ramp; above it, it is J's.
+/// Let J be the Jacobian of the full F_T, and P the outer product of F_T and the gradient of the
+/// ramp's factor s. The force on the ramp has the Jacobian s J + P along the plane and F_T * per_mm
+/// in depth. Its norm is convex in s, so it is largest at an end of the ramp. Above the ramp it is
+/// the norm of J.
 std::vector<float> stiffness_on_ramp(SampledView field, double scale, RampSlopes ramp) {
   const double per_step = 2.0 * field.geometry.pitch_mm * ramp.per_mm;
-  return interior_norms(field, scale, [=](const FieldSample* at, int width) {
-    double whole = 0.0;
+  return interior_norms(field, scale, [=](const FieldSample* pixel, int width) {
+    double above_ramp = 0.0;
     double at_top = 0.0;
     double at_touchdown = 0.0;
     for (const int step : {1, width}) {
-      const FieldSample& before = at[-step];
-      const FieldSample& after = at[step];
-      const double share = ramp.per_grey * (double{after.height} - before.height);
-      const double steps[] = {double{after.force_x} - before.force_x,
-                              double{after.force_y} - before.force_y};
-      const double shares[] = {share * at->force_x, share * at->force_y};
+      const FieldSample& lower = pixel[-step];
+      const FieldSample& upper = pixel[step];
+      const double share = ramp.per_grey * (double{upper.height} - lower.height);
+      const double steps[] = {double{upper.force_x} - lower.force_x,
+                              double{upper.force_y} - lower.force_y};
+      const double shares[] = {share * pixel->force_x, share * pixel->force_y};
       for (const int i : {0, 1}) {
-        whole += square(steps[i]);
+        above_ramp += square(steps[i]);
         at_top += square(steps[i] + shares[i]);
         at_touchdown += square(shares[i]);
       }
     }
-    const double in_depth = square(per_step * at->force_x) + square(per_step * at->force_y);
-    return std::max(whole, std::max(at_top, at_touchdown) + in_depth);
+    const double in_depth = square(per_step * pixel->force_x) + square(per_step * pixel->force_y);
+    return std::max(above_ramp, std::max(at_top, at_touchdown) + in_depth);
   });
 }
 
-/// The place of a value >= 0 in the order of its leading bits: floats sort like their bits.
-constexpr int kPlaceBits = 12;
-std::size_t place_of(float value) noexcept {
-  return std::bit_cast<std::uint32_t>(value) >> (32 - kPlaceBits);
+/// The bucket of a value >= 0 by its leading bits: floats sort like their bits.
+constexpr int kBucketBits = 12;
+std::size_t bucket_of(float value) noexcept {
+  return std::bit_cast<std::uint32_t>(value) >> (32 - kBucketBits);
 }
 
-/// Mean of the values that are not 0; 0 if there is none.
+/// Mean of the nonzero values; 0 if there are none.
 double mean_of_nonzero(std::span<const double> values) {
   const auto zeros = std::ranges::count(values, 0.0);
   double sum = 0.0;
@@ -98,7 +99,7 @@ double mean_of_nonzero(std::span<const double> values) {
   return sum == 0.0 ? 0.0 : sum / static_cast<double>(std::ssize(values) - zeros);
 }
 
-/// Transforms one component of the force without its mean.
+/// Transforms one component of the force minus its mean.
 void transform(SampledView field, float FieldSample::*component, RealFft<double>& fft) {
   double sum = 0.0;
   for (const FieldSample& sample : field.samples) sum += double{sample.*component};
@@ -109,17 +110,17 @@ void transform(SampledView field, float FieldSample::*component, RealFft<double>
   fft.forward();
 }
 
-/// The first column of a row of the half spectrum whose radial frequency is above a limit; the
-/// number of columns if there is none. All columns behind it are above the limit as well.
-int first_above(double limit_cycles_per_px, double fy, int width) {
-  const double limit = limit_cycles_per_px * (1.0 + kRoundingOfRadii);
+/// The first column in a row of the half spectrum with a radial frequency above a limit, or the
+/// number of columns. All later columns are above the limit as well.
+int first_column_above(double limit_cycles_per_px, double fy, int width) {
+  const double limit = limit_cycles_per_px * (1.0 + kRadiusTolerance);
   const auto is_above = [=](int column) {
     const double fx = static_cast<double>(column) / width;
     return std::sqrt(fx * fx + fy * fy) > limit;
   };
   const int columns = width / 2 + 1;
-  const double rest = std::sqrt(std::max(0.0, limit * limit - fy * fy));
-  int first = static_cast<int>(std::min(rest * width, static_cast<double>(columns)));
+  const double fx_limit = std::sqrt(std::max(0.0, limit * limit - fy * fy));
+  int first = static_cast<int>(std::min(fx_limit * width, static_cast<double>(columns)));
   while (first > 0 && is_above(first - 1)) --first;
   while (first < columns && !is_above(first)) ++first;
   return first;
@@ -128,12 +129,12 @@ int first_above(double limit_cycles_per_px, double fy, int width) {
 }  // namespace
 
 double tangential_rms(SampledView field) noexcept {
-  return root_mean(field,
-                   [](const FieldSample& s) { return square(s.force_x) + square(s.force_y); });
+  return root_mean_square(
+      field, [](const FieldSample& s) { return square(s.force_x) + square(s.force_y); });
 }
 
 double height_rms(SampledView field) noexcept {
-  return root_mean(field, [](const FieldSample& s) { return square(s.height); });
+  return root_mean_square(field, [](const FieldSample& s) { return square(s.height); });
 }
 
 std::vector<float> tangential_stiffness(SampledView field, double scale, RampSlopes ramp) {
@@ -175,33 +176,34 @@ double typical_stiffness(std::span<const std::vector<float>> pools) {
 }
 
 double percentile(std::span<const std::vector<float>> pools, double share) {
-  std::vector<std::size_t> counts(std::size_t{1} << kPlaceBits);
+  std::vector<std::size_t> counts(std::size_t{1} << kBucketBits);
   std::size_t size = 0;
   for (const std::vector<float>& pool : pools) {
-    for (const float value : pool) ++counts[place_of(value)];
+    for (const float value : pool) ++counts[bucket_of(value)];
     size += pool.size();
   }
   if (size == 0) return 0.0;
   const double position = share * static_cast<double>(size - 1);
   const auto rank = static_cast<std::size_t>(position);
-  std::size_t place = 0;
-  std::size_t below = 0;
-  while (below + counts[place] <= rank) below += counts[place++];
-  // Only values near the rank need sorting, and the smallest of those behind them.
-  std::vector<float> near;
-  near.reserve(counts[place]);
-  float next = std::numeric_limits<float>::infinity();
+  std::size_t bucket = 0;
+  std::size_t count_below = 0;
+  while (count_below + counts[bucket] <= rank) count_below += counts[bucket++];
+  // Only the rank's bucket needs sorting; of later buckets, only the smallest value matters.
+  std::vector<float> bucket_values;
+  bucket_values.reserve(counts[bucket]);
+  float next_value = std::numeric_limits<float>::infinity();
   for (const std::vector<float>& pool : pools) {
     for (const float value : pool) {
-      if (place_of(value) == place) near.push_back(value);
-      if (place_of(value) > place) next = std::min(next, value);
+      if (bucket_of(value) == bucket) bucket_values.push_back(value);
+      if (bucket_of(value) > bucket) next_value = std::min(next_value, value);
     }
   }
-  const auto middle = near.begin() + static_cast<std::ptrdiff_t>(rank - below);
-  std::nth_element(near.begin(), middle, near.end());
-  if (middle + 1 != near.end()) next = *std::min_element(middle + 1, near.end());
-  const double rest = position - static_cast<double>(rank);
-  return rest > 0.0 ? *middle + rest * (double{next} - *middle) : *middle;
+  const auto rank_value = bucket_values.begin() + static_cast<std::ptrdiff_t>(rank - count_below);
+  std::nth_element(bucket_values.begin(), rank_value, bucket_values.end());
+  if (rank_value + 1 != bucket_values.end())
+    next_value = *std::min_element(rank_value + 1, bucket_values.end());
+  const double fraction = position - static_cast<double>(rank);
+  return fraction > 0.0 ? *rank_value + fraction * (double{next_value} - *rank_value) : *rank_value;
 }
 
 std::vector<double> power_shares_above(SampledView field,
@@ -211,25 +213,24 @@ std::vector<double> power_shares_above(SampledView field,
   const int columns = width / 2 + 1;
   RealFft<double> fft(height, width);
   std::vector<double> shares(limits_cycles_per_px.size(), 0.0);
-  std::vector<int> first(shares.size());
+  std::vector<int> first_columns(shares.size());
   double total = 0.0;
   for (float FieldSample::*component : {&FieldSample::force_x, &FieldSample::force_y}) {
     transform(field, component, fft);
-    fft.spectrum()[0] = 0.0;  // the mean's rounding
+    fft.spectrum()[0] = 0.0;  // only rounding errors of the mean
     for (int row = 0; row < height; ++row) {
       const double fy = static_cast<double>(std::min(row, height - row)) / height;
-      std::ranges::transform(limits_cycles_per_px, first.begin(),
-                             [=](double limit) { return first_above(limit, fy, width); });
+      std::ranges::transform(limits_cycles_per_px, first_columns.begin(),
+                             [=](double limit) { return first_column_above(limit, fy, width); });
       const std::complex<double>* line =
           fft.spectrum().data() + static_cast<std::size_t>(row) * columns;
       for (int column = 0; column < columns; ++column) {
-        // Whether a coefficient's conjugate, which has the same power, is in another column and not
-        // stored.
-        const bool has_twin = column != 0 && 2 * column != width;
-        const double power = (has_twin ? 2.0 : 1.0) * std::norm(line[column]);
+        // In all other columns, the conjugate has the same power and is not stored.
+        const bool has_unstored_conjugate = column != 0 && 2 * column != width;
+        const double power = (has_unstored_conjugate ? 2.0 : 1.0) * std::norm(line[column]);
         total += power;
         for (std::size_t i = 0; i < shares.size(); ++i) {
-          if (column >= first[i]) shares[i] += power;
+          if (column >= first_columns[i]) shares[i] += power;
         }
       }
     }

@@ -1,5 +1,5 @@
-/// \file Strength, steepness and spectrum of a field before gains: the models compute gains and
-/// statistics from them. Private to engine/rendering. Source: docs/method.md, "Rendering".
+/// \file Strength, steepness and spectrum of a field before gains, from which the models compute
+/// gains and statistics. Private to engine/rendering. Source: docs/method.md, "Rendering".
 #pragma once
 
 #include "engine/rendering/texture_field.hpp"
@@ -29,55 +29,55 @@ struct SampledField {
 };
 
 /// Root mean square of |F_T| over all pixels, grey levels per pixel. Exactly 0 only if every force
-/// is zero; not finite if a sample is not.
+/// is zero; not finite if a sample is not finite.
 [[nodiscard]] double tangential_rms(SampledView field) noexcept;
 
 /// Root mean square of the heights over all pixels, grey levels.
 [[nodiscard]] double height_rms(SampledView field) noexcept;
 
-/// The slopes of the touchdown ramp's share of F_T by height and depth; zeros: no ramp.
+/// Derivatives of the touchdown ramp's factor on F_T by height and depth; zeros: no ramp.
 struct RampSlopes {
   double per_grey = 0.0;  ///< c / touchdown_ramp_n
   double per_mm = 0.0;    ///< k / touchdown_ramp_n
 };
 
 /// Scale * Frobenius norm of the in-plane Jacobian of F_T at every interior pixel, by central
-/// differences over the pitch: grey levels per pixel per mm. With a ramp, of the Jacobian along the
-/// plane and in depth, at the load at which it is largest. A field with a side below 3 has no
-/// interior. In single precision.
+/// differences over the pitch: grey levels per pixel per mm. With a ramp, the Jacobian includes
+/// depth, at the load where its norm is largest. A field with a side below 3 has no interior. In
+/// single precision.
 [[nodiscard]] std::vector<float> tangential_stiffness(SampledView field, double scale,
                                                       RampSlopes ramp = {});
 
 /// Scale * norm of the heights' gradient at every interior pixel: grey levels per mm.
 [[nodiscard]] std::vector<float> height_stiffness(SampledView field, double scale);
 
-/// Factors that equalise fields: with Equalise::rms, 1 / rms, and 0 for a flat field; else 1 each.
-/// \param rms  the rms of each field; 0 means that the field is flat
+/// Factors that equalise fields. Equalise::rms: 1 / rms, or 0 for a flat field; otherwise 1.
+/// \param rms  the rms of each field; 0: flat
 /// \throws std::invalid_argument if an rms is not finite
 [[nodiscard]] std::vector<double> equalising_factors(std::span<const double> rms,
                                                      Equalise equalise);
 
-/// The factor by which an explicit gain multiplies equalising_factors: with Equalise::rms it keeps
-/// the mean rms of the fields that are not flat.
+/// The factor by which an explicit gain multiplies equalising_factors(). Equalise::rms: keeps the
+/// mean rms of the fields that are not flat.
 [[nodiscard]] double explicit_factor(double gain, std::span<const double> rms, Equalise equalise);
 
-/// The 99th percentile of a pool of stiffnesses, or its maximum where the percentile is below a
-/// thousandth of that: then most of the pool is flat, or contains the traces that a filter or a
-/// spline leaves far from any texture, and the percentile would not be a limit.
+/// The 99th percentile of pooled stiffnesses, or the maximum if the percentile is below a
+/// thousandth of it. Then most of the pool is flat, or contains filter residues far from any
+/// texture, and the percentile would not limit the stiffness.
 /// \param pools  finite values >= 0
 [[nodiscard]] double typical_stiffness(std::span<const std::vector<float>> pools);
 
-/// Percentile of several pools together, by linear interpolation between order statistics (NumPy's
-/// default), exactly; 0 if they are empty. Thread-safe; cost: some 2 ns a value.
+/// The exact percentile of the union of pools, by linear interpolation between order statistics
+/// (NumPy's default); 0 if they are empty. Thread-safe. Cost: about 2 ns per value.
 /// \param pools  finite values >= 0
 /// \param share  0 .. 1
 [[nodiscard]] double percentile(std::span<const std::vector<float>> pools, double share);
 
-/// For each limit, the share of the force's power (both components, means removed) at radial
-/// spatial frequencies above it; 0 for a constant force. The spectrum is that of the plane repeated
-/// periodically. Thread-safe. Cost: two real Fourier transforms.
+/// For each limit, the share of the force's power (both components, means removed) at higher radial
+/// spatial frequencies; 0 for a constant force. The plane is treated as periodic. Thread-safe.
+/// Cost: two real Fourier transforms.
 /// \param field  at least 1 x 1
-/// \param limits_cycles_per_px  a frequency within rounding of a limit is not above it
+/// \param limits_cycles_per_px  frequencies that equal a limit within rounding are not above it
 [[nodiscard]] std::vector<double> power_shares_above(SampledView field,
                                                      std::span<const double> limits_cycles_per_px);
 

@@ -20,7 +20,7 @@ void check(std::span<const FieldView> fields, const RenderingOptions& options) {
   }
   if (!std::ranges::all_of(fields,
                            [&](const FieldView& field) { return field.model == options.model; })) {
-    throw std::invalid_argument("choose_gains: a field is of another rendering model");
+    throw std::invalid_argument("choose_gains: a field has another rendering model");
   }
 }
 

@@ -1,5 +1,5 @@
-/// \file The parts of a rendering model besides its force law: the functions behind
-/// make_texture_field, choose_gains, field_statistics and lateral_field. Private to
+/// \file The functions of a rendering model besides its force law, which implement
+/// make_texture_field(), choose_gains(), field_statistics() and lateral_field(). Private to
 /// engine/rendering. How to add a model: docs/add-a-rendering-model.md.
 #pragma once
 
@@ -19,16 +19,16 @@
 
 namespace touchtrial::engine {
 
-/// The parts of one model. Callers check the arguments first, except for samples that are not
-/// finite: the parts themselves throw std::invalid_argument for those.
+/// The functions of one model. Callers check the arguments, except for non-finite samples, for
+/// which these functions throw std::invalid_argument.
 struct ModelParts {
   /// \param smooth  the texture T after the reconstruction filter, grey levels
   TextureField (*make_field)(Plane<double> smooth, const RenderingOptions& options);
-  /// The field at its pixel centres.
+  /// Samples the field at its pixel centres.
   SampledField (*sampled)(FieldView field);
   StudyGains (*choose_gains)(std::span<const FieldView> fields, const RenderingOptions& options);
   FieldStatistics (*statistics)(FieldView field, Gains gains, const RenderingOptions& options);
-  /// Newtons of one grey level per pixel of the lateral force.
+  /// Newtons of lateral force per (grey level per pixel).
   double (*n_per_grey)(FieldView field, Gains gains) noexcept;
 };
 
@@ -39,27 +39,27 @@ struct ModelParts {
 /// Defined in surface_model.cpp.
 [[nodiscard]] ModelParts surface_parts() noexcept;
 
-/// The statistics of a lateral force that is proportional to a field's; leaves the others at 0.
-/// \param field  with samples
-/// \param n_per_grey  newtons of one grey level per pixel
+/// The statistics of a field's lateral force; leaves the other statistics at 0.
+/// \param field  not empty
+/// \param n_per_grey  newtons per (grey level per pixel)
 [[nodiscard]] FieldStatistics lateral_statistics(SampledView field, double n_per_grey);
 
-/// The `jobs` of in_parallel for measuring fields: all cores, or 1 for large fields, each of which
-/// uses all cores itself, to limit memory.
+/// The `jobs` argument of in_parallel() for measuring fields: all cores, or 1 for large fields, to
+/// limit memory, because measuring a large field uses all cores.
 [[nodiscard]] inline int jobs_for(std::span<const FieldView> fields) noexcept {
   const auto is_large = [](const FieldView& field) {
-    return static_cast<std::int64_t>(field.heights.size()) >= kThreadsFromPixels;
+    return static_cast<std::int64_t>(field.heights.size()) >= kMinParallelPixels;
   };
   return std::ranges::any_of(fields, is_large) ? 1 : 0;
 }
 
-/// Checks a field for field_statistics by its two rms values.
-/// \throws std::invalid_argument if one of them is not finite
+/// Checks a field by its two rms values.
+/// \throws std::invalid_argument if one is not finite
 void require_finite_rms(double tangential, double normal);
 
-/// The force, shortened to the limit with its direction kept: every model limits its force so. Also
-/// takes forces whose squares overflow; a force that is not finite becomes zero.
-[[nodiscard]] inline Vec3 limited_in_norm(Vec3 force_n, double limit_n) noexcept {
+/// Limits the norm of a force and keeps its direction. Handles forces whose squares overflow; a
+/// force that is not finite becomes zero.
+[[nodiscard]] inline Vec3 limit_norm(Vec3 force_n, double limit_n) noexcept {
   const double squares = force_n.x * force_n.x + force_n.y * force_n.y + force_n.z * force_n.z;
   if (squares <= limit_n * limit_n) return force_n;
   if (!is_finite(force_n)) return {};

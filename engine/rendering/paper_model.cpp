@@ -30,12 +30,13 @@ constexpr auto kPull = [] {
   return pull;
 }();
 
-/// The tangential force at a pixel's centre, from the definition (docs/method.md, "Force field").
+/// The tangential force at a pixel's centre, computed by its definition (docs/method.md, "Force
+/// field").
 Vec2 force_at_pixel(const FieldView& field, int y, int x) noexcept {
   const float* const heights = field.slopes().data();
   const int width = field.geometry.width_px;
   const int reach = std::min(field.neighbourhood / 2, kMaxReach);
-  const auto row = [&](int at) { return heights + static_cast<std::size_t>(at) * width; };
+  const auto row = [&](int index) { return heights + static_cast<std::size_t>(index) * width; };
   const double centre = row(y)[x];
   Vec2 force;
   for (int dy = -std::min(reach, y); dy <= std::min(reach, field.geometry.height_px - 1 - y);
@@ -50,9 +51,9 @@ Vec2 force_at_pixel(const FieldView& field, int y, int x) noexcept {
   return force;
 }
 
-/// The same for a neighbourhood of 3, without branches. Missing neighbours are replaced by existing
-/// ones with weight 0.
-Vec2 force_at_any_pixel(const float* heights, const PlaneGeometry& plane, int y, int x) noexcept {
+/// The same force for a neighbourhood of 3, without branches. Missing neighbours have weight 0 and
+/// the position of an existing one.
+Vec2 force_in_3x3(const float* heights, const PlaneGeometry& plane, int y, int x) noexcept {
   const int left = x > 0 ? 1 : 0;
   const int right = x + 1 < plane.width_px ? 1 : 0;
   const int up = y > 0 ? 1 : 0;
@@ -62,19 +63,19 @@ Vec2 force_at_any_pixel(const float* heights, const PlaneGeometry& plane, int y,
   const float* const below = middle + std::ptrdiff_t{down} * plane.width_px;
   const double centre = *middle;
   /// left * (G_left - G_i) - right * (G_right - G_i) in a row.
-  const auto across = [&](const float* row) {
+  const auto row_force = [&](const float* row) {
     return left * (row[-left] - centre) - right * (row[right] - centre);
   };
-  const auto along = [&](int dx) {
+  const auto column_force = [&](int dx) {
     return up * (above[dx] - centre) - down * (below[dx] - centre);
   };
-  return {across(middle) + 0.5 * (up * across(above) + down * across(below)),
-          along(0) + 0.5 * (left * along(-left) + right * along(right))};
+  return {row_force(middle) + 0.5 * (up * row_force(above) + down * row_force(below)),
+          column_force(0) + 0.5 * (left * column_force(-left) + right * column_force(right))};
 }
 
-/// A point among pixels: between `left` and `left + right` (0 or 1) by the share `to_right`, and
-/// likewise along y.
-struct Place {
+/// A point between pixels: from column `left` towards `left + right` (`right` is 0 or 1) by the
+/// fraction `to_right`; likewise along y.
+struct PixelPosition {
   int left;
   int top;
   int right;
@@ -83,7 +84,7 @@ struct Place {
   double to_down;
 };
 
-Place place_in(const PlaneGeometry& plane, Vec2 px) noexcept {
+PixelPosition pixel_position(const PlaneGeometry& plane, Vec2 px) noexcept {
   const double x = std::clamp(px.x, 0.0, plane.width_px - 1.0);
   const double y = std::clamp(px.y, 0.0, plane.height_px - 1.0);
   const auto left = static_cast<int>(x);
@@ -92,51 +93,51 @@ Place place_in(const PlaneGeometry& plane, Vec2 px) noexcept {
           x - left, y - top};
 }
 
-/// Bilinear between the four pixels, given the value at (y, x) of each.
+/// Interpolates value_at(y, x) bilinearly between the four pixels.
 template <typename ValueAt>
-auto mixed(const Place& at, ValueAt value_at) noexcept {
+auto interpolate(const PixelPosition& pixel, ValueAt value_at) noexcept {
   const auto along_row = [&](int y) {
-    const auto left = value_at(y, at.left);
-    if (at.to_right == 0.0) return left;  // as in the outer half pixel
-    return left + at.to_right * (value_at(y, at.left + at.right) - left);
+    const auto left = value_at(y, pixel.left);
+    if (pixel.to_right == 0.0) return left;  // as in the outer half pixel
+    return left + pixel.to_right * (value_at(y, pixel.left + pixel.right) - left);
   };
-  const auto upper = along_row(at.top);
-  if (at.to_down == 0.0) return upper;
-  return upper + at.to_down * (along_row(at.top + at.down) - upper);
+  const auto upper = along_row(pixel.top);
+  if (pixel.to_down == 0.0) return upper;
+  return upper + pixel.to_down * (along_row(pixel.top + pixel.down) - upper);
 }
 
-double height_at(const FieldView& field, const Place& at) noexcept {
-  return mixed(at, [&](int y, int x) {
+double height_at(const FieldView& field, const PixelPosition& pixel) noexcept {
+  return interpolate(pixel, [&](int y, int x) {
     return double{field.heights[static_cast<std::size_t>(y) * field.geometry.width_px + x]};
   });
 }
 
-/// Height and force at any point, from the definition at the four pixels round it.
-[[gnu::noinline]] PatchSums sums_anywhere(const FieldView& field, Vec2 px) noexcept {
-  const Place at = place_in(field.geometry, px);
+/// Height and force at any point, interpolated between the four pixels around it.
+[[gnu::noinline]] PatchSums general_sums(const FieldView& field, Vec2 px) noexcept {
+  const PixelPosition pixel = pixel_position(field.geometry, px);
   const bool is_default = field.neighbourhood == 3;
-  const Vec2 force = mixed(at, [&](int y, int x) {
-    return is_default ? force_at_any_pixel(field.slopes().data(), field.geometry, y, x)
+  const Vec2 force = interpolate(pixel, [&](int y, int x) {
+    return is_default ? force_in_3x3(field.slopes().data(), field.geometry, y, x)
                       : force_at_pixel(field, y, x);
   });
-  return {height_at(field, at), force.x, force.y};
+  return {height_at(field, pixel), force.x, force.y};
 }
 
-/// The patches of the plane whose slopes are felt, for the usual neighbourhood.
+/// The patches for the tangential force; none unless the neighbourhood is 3.
 Patches patches_of(const FieldView& field) {
   if (field.empty() || field.neighbourhood != 3) return {};
   return {field.slopes(), field.geometry.height_px, field.geometry.width_px, bilinear_sum()};
 }
 
-/// The field, or the flat wall if it is of another model.
-FieldView of_paper(FieldView field) noexcept {
+/// Replaces a field of another model by a flat wall.
+FieldView paper_field_or_wall(FieldView field) noexcept {
   if (field.model != ModelKind::paper) field.heights = {};
   return field;
 }
 
-constexpr double kSlackOfGains = 1e-9;  // relative; less above the budget is rounding
+constexpr double kBudgetTolerance = 1e-9;  // relative
 
-TextureField field_of_paper(Plane<double> smooth, const RenderingOptions& options) {
+TextureField make_paper_field(Plane<double> smooth, const RenderingOptions& options) {
   if (options.neighbourhood < 3 || options.neighbourhood % 2 == 0 ||
       options.neighbourhood > kMaxNeighbourhood) {
     throw std::invalid_argument("make_texture_field: the neighbourhood must be odd, 3 to 31");
@@ -153,10 +154,10 @@ Plane<double> plane_of(std::span<const float> samples, const PlaneGeometry& geom
   return plane;
 }
 
-/// The same as force_at_pixel with a neighbourhood of 3, to the last bit, for the pixels 1 ..
-/// width - 2 of a row that has rows above and below. Its loop vectorises.
+/// Vectorised form of force_at_pixel() with a neighbourhood of 3, equal to the last bit, for pixels
+/// 1 .. width - 2 of an interior row.
 /// \param middle  the row's first height
-void row_of_forces(const float* middle, int width, float* force_x, float* force_y) noexcept {
+void force_row(const float* middle, int width, float* force_x, float* force_y) noexcept {
   const float* const above = middle - width;
   const float* const below = middle + width;
   for (int x = 1; x < width - 1; ++x) {
@@ -171,8 +172,8 @@ void row_of_forces(const float* middle, int width, float* force_x, float* force_
   }
 }
 
-/// With a neighbourhood of 3, without planes in double.
-SampledField sampled_by_rows(FieldView field) {
+/// Samples a field with a neighbourhood of 3, without planes in double.
+SampledField sample_paper_3x3(FieldView field) {
   const int height = field.geometry.height_px;
   const int width = field.geometry.width_px;
   SampledField sampled{field.geometry, {height, width}};
@@ -183,7 +184,7 @@ SampledField sampled_by_rows(FieldView field) {
       const std::size_t begin = static_cast<std::size_t>(y) * width;
       const bool is_inside = y > 0 && y + 1 < height;
       if (is_inside)
-        row_of_forces(field.slopes().data() + begin, width, force_x.data(), force_y.data());
+        force_row(field.slopes().data() + begin, width, force_x.data(), force_y.data());
       for (int x = 0; x < width; x += is_inside && x == 0 && width > 1 ? width - 1 : 1) {
         const Vec2 force = force_at_pixel(field, y, x);
         force_x[x] = static_cast<float>(force.x);
@@ -198,8 +199,8 @@ SampledField sampled_by_rows(FieldView field) {
   return sampled;
 }
 
-SampledField sampled_paper(FieldView field) {
-  if (field.neighbourhood == 3) return sampled_by_rows(field);
+SampledField sample_paper(FieldView field) {
+  if (field.neighbourhood == 3) return sample_paper_3x3(field);
   const ForceField<double> force =
       tangential_force(plane_of(field.slopes(), field.geometry), field.neighbourhood);
   SampledField sampled{field.geometry, {field.geometry.height_px, field.geometry.width_px}};
@@ -210,17 +211,16 @@ SampledField sampled_paper(FieldView field) {
   return sampled;
 }
 
-/// The inputs of one of the two gains, k_t or c. One entry for each field.
+/// The inputs of one gain, k_t or c: one entry per field.
 struct Channel {
   std::vector<double> rms;
-  std::vector<double> factors;                ///< equalising
+  std::vector<double> factors;                ///< equalising_factors()
   std::vector<std::vector<float>> stiffness;  ///< with the factors; empty for a flat field
 
   explicit Channel(std::size_t fields) : rms(fields), factors(fields), stiffness(fields) {}
 };
 
-/// How the ramp adds to the lateral force's stiffness. Ramps too short to be distinguished from a
-/// step count as this long, which keeps the numbers finite.
+/// The ramp's slopes, with a minimum length that keeps them finite.
 RampSlopes ramp_slopes(const RenderingOptions& options, double normal_n) {
   constexpr double kMinRampN = 1e-9;
   if (options.touchdown_ramp_n == 0.0) return {};
@@ -229,7 +229,7 @@ RampSlopes ramp_slopes(const RenderingOptions& options, double normal_n) {
 }
 
 struct ChannelGains {
-  std::vector<double> of_field;
+  std::vector<double> per_field;
   bool over_budget = false;
 };
 
@@ -241,51 +241,55 @@ ChannelGains channel_gains(const Channel& channel, std::optional<double> explici
   double factor = stiffness > 0.0 ? budget / stiffness : 0.0;
   if (explicit_gain) {
     factor = explicit_factor(*explicit_gain, channel.rms, options.equalise);
-    gains.over_budget = factor * stiffness > budget * (1.0 + kSlackOfGains);
+    gains.over_budget = factor * stiffness > budget * (1.0 + kBudgetTolerance);
   }
-  for (double& gain : gains.of_field) gain *= factor;
+  for (double& gain : gains.per_field) gain *= factor;
   return gains;
 }
 
-StudyGains gains_of_paper(std::span<const FieldView> fields, const RenderingOptions& options) {
-  Channel along(fields.size());
-  Channel across(fields.size());
+StudyGains choose_paper_gains(std::span<const FieldView> fields, const RenderingOptions& options) {
+  Channel tangential_channel(fields.size());
+  Channel normal_channel(fields.size());
   const auto set_rms = [&](Channel& channel, std::size_t i, double rms) {
     channel.rms[i] = rms;
     channel.factors[i] = equalising_factors({&rms, 1}, options.equalise).front();
   };
   in_parallel(jobs_for(fields), fields.size(), [&](std::size_t i) {
-    const SampledField sampled = sampled_paper(fields[i]);
-    set_rms(along, i, tangential_rms(sampled.view()));
-    set_rms(across, i, height_rms(sampled.view()));
-    if (across.rms[i] > 0.0)
-      across.stiffness[i] = height_stiffness(sampled.view(), across.factors[i]);
-    if (along.rms[i] > 0.0 && options.touchdown_ramp_n == 0.0)
-      along.stiffness[i] = tangential_stiffness(sampled.view(), along.factors[i]);
+    const SampledField sampled = sample_paper(fields[i]);
+    set_rms(tangential_channel, i, tangential_rms(sampled.view()));
+    set_rms(normal_channel, i, height_rms(sampled.view()));
+    if (normal_channel.rms[i] > 0.0)
+      normal_channel.stiffness[i] = height_stiffness(sampled.view(), normal_channel.factors[i]);
+    if (tangential_channel.rms[i] > 0.0 && options.touchdown_ramp_n == 0.0)
+      tangential_channel.stiffness[i] =
+          tangential_stiffness(sampled.view(), tangential_channel.factors[i]);
   });
-  std::optional<Gains> given = options.gains;
-  const ChannelGains normal =
-      channel_gains(across, given ? std::optional(given->normal_n) : std::nullopt, options);
-  // On a ramp, heights add to the lateral stiffness with the gain chosen before.
+  const std::optional<Gains> explicit_gains = options.gains;
+  const ChannelGains normal = channel_gains(
+      normal_channel, explicit_gains ? std::optional(explicit_gains->normal_n) : std::nullopt,
+      options);
+  // On a ramp, heights scaled by the normal gain add to the lateral stiffness.
   if (options.touchdown_ramp_n != 0.0) {
     in_parallel(jobs_for(fields), fields.size(), [&](std::size_t i) {
-      if (along.rms[i] == 0.0) return;
-      along.stiffness[i] = tangential_stiffness(sampled_paper(fields[i]).view(), along.factors[i],
-                                                ramp_slopes(options, normal.of_field[i]));
+      if (tangential_channel.rms[i] == 0.0) return;
+      tangential_channel.stiffness[i] =
+          tangential_stiffness(sample_paper(fields[i]).view(), tangential_channel.factors[i],
+                               ramp_slopes(options, normal.per_field[i]));
     });
   }
-  const ChannelGains tangential =
-      channel_gains(along, given ? std::optional(given->tangential_n) : std::nullopt, options);
+  const ChannelGains tangential = channel_gains(
+      tangential_channel,
+      explicit_gains ? std::optional(explicit_gains->tangential_n) : std::nullopt, options);
   StudyGains gains;
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    gains.of_field.push_back({tangential.of_field[i], normal.of_field[i]});
+    gains.per_field.push_back({tangential.per_field[i], normal.per_field[i]});
   }
   gains.over_budget = tangential.over_budget || normal.over_budget;
   return gains;
 }
 
-FieldStatistics statistics_of_paper(FieldView field, Gains gains, const RenderingOptions& options) {
-  const SampledField sampled = sampled_paper(field);
+FieldStatistics paper_statistics(FieldView field, Gains gains, const RenderingOptions& options) {
+  const SampledField sampled = sample_paper(field);
   const SampledView view = sampled.view();
   const double heights = height_rms(view);
   require_finite_rms(tangential_rms(view), heights);
@@ -297,14 +301,14 @@ FieldStatistics statistics_of_paper(FieldView field, Gains gains, const Renderin
   return statistics;
 }
 
-double n_per_grey_of_paper(FieldView /*field*/, Gains gains) noexcept {
+double paper_n_per_grey(FieldView /*field*/, Gains gains) noexcept {
   return gains.tangential_n;
 }
 
 }  // namespace
 
 PaperModel::PaperModel(FieldView field, const RenderingOptions& options, Gains gains)
-    : field_(of_paper(field)),
+    : field_(paper_field_or_wall(field)),
       patches_(patches_of(field_)),
       stiffness_n_per_mm_(options.stiffness_n_per_mm),
       damping_n_s_per_mm_(options.damping_n_s_per_mm),
@@ -314,7 +318,7 @@ PaperModel::PaperModel(FieldView field, const RenderingOptions& options, Gains g
       gains_(gains) {}
 
 Vec3 PaperModel::force_n(const Vec3& position, const Vec3& velocity_mm_s) const noexcept {
-  const Vec3 position_mm = by_number(position);
+  const Vec3 position_mm = copy_by_component(position);
   if (!is_finite(position_mm) || !is_finite(velocity_mm_s)) return {};
   double elastic_n = -stiffness_n_per_mm_ * position_mm.z;
   PatchSums texture;
@@ -322,9 +326,9 @@ Vec3 PaperModel::force_n(const Vec3& position, const Vec3& velocity_mm_s) const 
   const bool is_default = patches_.has(px);
   if (is_default || (field_.geometry.contains(position_mm.x, position_mm.y) && !field_.empty())) {
     if (is_out_of_reach(elastic_n)) return {};
-    texture = is_default ? patches_.at(px) : sums_anywhere(field_, px);
-    if (is_default && !field_.other_slopes.empty()) {
-      texture.value = height_at(field_, place_in(field_.geometry, px));
+    texture = is_default ? patches_.at(px) : general_sums(field_, px);
+    if (is_default && !field_.slope_heights.empty()) {
+      texture.value = height_at(field_, pixel_position(field_.geometry, px));
     }
     elastic_n += gains_.normal_n * (texture.value - reference_height_);
   }
@@ -333,8 +337,8 @@ Vec3 PaperModel::force_n(const Vec3& position, const Vec3& velocity_mm_s) const 
   if (!(load_n > 0.0)) return {};
   double tangential_n = gains_.tangential_n;
   if (load_n < touchdown_ramp_n_) tangential_n *= load_n / touchdown_ramp_n_;
-  return limited_in_norm({tangential_n * texture.along_x, tangential_n * texture.along_y, normal_n},
-                         max_force_n_);
+  return limit_norm({tangential_n * texture.along_x, tangential_n * texture.along_y, normal_n},
+                    max_force_n_);
 }
 
 bool PaperModel::is_out_of_reach(double wall_n) const noexcept {
@@ -342,10 +346,8 @@ bool PaperModel::is_out_of_reach(double wall_n) const noexcept {
   return wall_n + gains_.normal_n * (field_.highest - reference_height_) <= 0.0;
 }
 
-// What make_texture_field, choose_gains, field_statistics and lateral_field do for this model.
-
 ModelParts paper_parts() noexcept {
-  return {field_of_paper, sampled_paper, gains_of_paper, statistics_of_paper, n_per_grey_of_paper};
+  return {make_paper_field, sample_paper, choose_paper_gains, paper_statistics, paper_n_per_grey};
 }
 
 }  // namespace touchtrial::engine

@@ -8,34 +8,36 @@
 
 namespace touchtrial::engine {
 
-/// The force on the stylus from one texture, which the servo evaluates a thousand times a second.
+/// The force on the stylus from one texture, evaluated by the servo at 1 kHz.
 /// Plane frame, millimetres: x and y along the texture from its top-left corner, z out of the plane
 /// towards the hand; depth = -z.
 class PaperModel {
  public:
-  /// Reads no sample: of a mapped field, only the pages that the stylus touches are loaded.
+  /// Reads no samples, so that only touched pages of a mapped field are loaded.
   /// \param field  its heights must outlive the model
   /// \param options,gains  finite, in the ranges of their types
-  /// \throws Error if Highway's library cannot be used
+  /// \throws Error if Highway's library cannot be loaded
   PaperModel(FieldView field, const RenderingOptions& options, Gains gains);
 
   /// Contact lasts while the elastic force k * depth + c * (G - G_ref) is positive; with
   /// reference_grey 0, depth must be positive too. In contact F_N = elastic force - damping * v_z
   /// and F_T = k_t * tangential_force(heights), both bilinear between pixel centres and constant
-  /// across the outer half pixel; G = 128 + T. No plane of forces is stored: they follow from the
-  /// heights round the stylus. Below a load of touchdown_ramp_n F_T is multiplied by load /
-  /// touchdown_ramp_n; the load is the smaller of elastic force and F_N. The norm of the total is
-  /// limited to max_force_n; its direction is kept.
-  /// Damping neither pulls (where F_N <= 0 there is no force at all) nor acts above the surface.
-  /// Beyond the plane's edge: the flat wall, k * depth - damping * v_z.
-  /// Without contact the force is zero; the field is not read where no surface could reach the
-  /// hand. A position or velocity that is not finite gives zero force.
-  /// No allocation, lock or exception. Any number of threads. Cost: 20 to 40 ns; with wider
+  /// across the outer half pixel; G = 128 + T. Forces are computed from the heights around the
+  /// stylus. Below a load of touchdown_ramp_n F_T is multiplied by load / touchdown_ramp_n; the
+  /// load is the smaller of elastic force and F_N. The norm of the total is limited to max_force_n;
+  /// its direction is kept.
+  ///
+  /// Damping never pulls (no force if F_N <= 0) and never acts above the surface. Beyond the
+  /// plane's edge is the flat wall, k * depth - damping * v_z. Without contact the force is zero.
+  /// The field is not read above its highest point. A position or velocity that is not finite gives
+  /// zero force.
+  ///
+  /// Real-time safe: no allocation, lock or exception. Thread-safe. Cost: 20 to 40 ns; with wider
   /// neighbourhoods about 4 n^2 ns.
   [[nodiscard]] Vec3 force_n(const Vec3& position_mm, const Vec3& velocity_mm_s) const noexcept;
 
  private:
-  /// Whether a hand at this wall force is beyond every surface of the field.
+  /// Whether a stylus with this wall force is above every point of the field.
   [[nodiscard]] bool is_out_of_reach(double wall_n) const noexcept;
 
   FieldView field_;

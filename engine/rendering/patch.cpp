@@ -14,13 +14,13 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A row of four, in one register or in several.
+/// A row of four values, in one or more registers.
 using Doubles = hn::CappedTag<double, 4>;
 using Values = hn::Vec<Doubles>;
 
 /// The values of four columns.
 struct Row {
-  alignas(32) double at[4];
+  alignas(32) double lanes[4];
 };
 
 template <class Visit>
@@ -28,40 +28,43 @@ HWY_INLINE void for_all_lanes(const Visit& visit) {
   for (std::size_t i = 0; i < 4; i += hn::Lanes(Doubles())) visit(i);
 }
 
-HWY_INLINE Values load(const float* from) {
-  return hn::PromoteTo(Doubles(), hn::LoadU(hn::Rebind<float, Doubles>(), from));
+HWY_INLINE Values load(const float* source) {
+  return hn::PromoteTo(Doubles(), hn::LoadU(hn::Rebind<float, Doubles>(), source));
 }
 
 /// a + share * (b - a)
-HWY_INLINE Values between(Values a, Values b, Values share) {
+HWY_INLINE Values interpolate(Values a, Values b, Values share) {
   return hn::Add(a, hn::Mul(share, hn::Sub(b, a)));
 }
-HWY_INLINE double between(double a, double b, double share) {
+HWY_INLINE double interpolate(double a, double b, double share) {
   return a + share * (b - a);
 }
 
-PatchSums bilinear(const float* corner, std::size_t stride, double u, double v) {
+PatchSums sum_bilinear(const float* corner, std::size_t stride, double u, double v) {
   const Doubles d;
-  const Values down = hn::Set(d, v);
+  const Values fraction_y = hn::Set(d, v);
   Row height;
   Row smooth;
   Row step;
   for_all_lanes([&](std::size_t i) HWY_ATTR {
-    const float* from = corner + i;
-    const Values first = load(from);
-    const Values second = load(from + stride);
-    const Values third = load(from + 2 * stride);
-    const Values fourth = load(from + 3 * stride);
-    hn::Store(between(second, third, down), d, height.at + i);
+    const float* source = corner + i;
+    const Values first = load(source);
+    const Values second = load(source + stride);
+    const Values third = load(source + 2 * stride);
+    const Values fourth = load(source + 3 * stride);
+    hn::Store(interpolate(second, third, fraction_y), d, height.lanes + i);
     const Values middle = hn::Add(second, third);
-    hn::Store(hn::Add(middle, between(hn::Add(first, second), hn::Add(third, fourth), down)), d,
-              smooth.at + i);
-    hn::Store(between(hn::Sub(first, third), hn::Sub(second, fourth), down), d, step.at + i);
+    hn::Store(
+        hn::Add(middle, interpolate(hn::Add(first, second), hn::Add(third, fourth), fraction_y)), d,
+        smooth.lanes + i);
+    hn::Store(interpolate(hn::Sub(first, third), hn::Sub(second, fourth), fraction_y), d,
+              step.lanes + i);
   });
-  return {between(height.at[1], height.at[2], u),
-          0.5 * between(smooth.at[0] - smooth.at[2], smooth.at[1] - smooth.at[3], u),
-          0.5 * (step.at[1] + step.at[2] +
-                 between(step.at[0] + step.at[1], step.at[2] + step.at[3], u))};
+  return {
+      interpolate(height.lanes[1], height.lanes[2], u),
+      0.5 * interpolate(smooth.lanes[0] - smooth.lanes[2], smooth.lanes[1] - smooth.lanes[3], u),
+      0.5 * (step.lanes[1] + step.lanes[2] +
+             interpolate(step.lanes[0] + step.lanes[1], step.lanes[2] + step.lanes[3], u))};
 }
 
 /// Weights of four coefficients, for the value and for the slope.
@@ -70,8 +73,8 @@ struct Weights {
   Row slope;
 };
 
-/// Weights for a point at a distance t beyond the second coefficient.
-HWY_INLINE void weigh(double t, Weights& weights) {
+/// Computes the weights for a point at a distance t after the second coefficient.
+HWY_INLINE void set_weights(double t, Weights& weights) {
   // Coefficients of 1, t, t^2 and t^3.
   constexpr double kSixth = 1.0 / 6.0;
   constexpr Row kOne = {{kSixth, 4.0 * kSixth, kSixth, 0.0}};
@@ -81,27 +84,27 @@ HWY_INLINE void weigh(double t, Weights& weights) {
   constexpr Row kTwiceSecond = {{1.0, -2.0, 1.0, 0.0}};
   constexpr Row kThriceThird = {{-0.5, 1.5, -1.5, 0.5}};
   const Doubles d;
-  const Values at = hn::Set(d, t);
+  const Values t_lanes = hn::Set(d, t);
   for_all_lanes([&](std::size_t i) HWY_ATTR {
-    const auto factor = [&](const Row& row) HWY_ATTR { return hn::Load(d, row.at + i); };
-    Values value = hn::Add(hn::Mul(factor(kThird), at), factor(kSecond));
-    value = hn::Add(hn::Mul(value, at), factor(kFirst));
-    hn::Store(hn::Add(hn::Mul(value, at), factor(kOne)), d, weights.value.at + i);
-    const Values slope = hn::Add(hn::Mul(factor(kThriceThird), at), factor(kTwiceSecond));
-    hn::Store(hn::Add(hn::Mul(slope, at), factor(kFirst)), d, weights.slope.at + i);
+    const auto factor = [&](const Row& row) HWY_ATTR { return hn::Load(d, row.lanes + i); };
+    Values value = hn::Add(hn::Mul(factor(kThird), t_lanes), factor(kSecond));
+    value = hn::Add(hn::Mul(value, t_lanes), factor(kFirst));
+    hn::Store(hn::Add(hn::Mul(value, t_lanes), factor(kOne)), d, weights.value.lanes + i);
+    const Values slope = hn::Add(hn::Mul(factor(kThriceThird), t_lanes), factor(kTwiceSecond));
+    hn::Store(hn::Add(hn::Mul(slope, t_lanes), factor(kFirst)), d, weights.slope.lanes + i);
   });
 }
 
 HWY_INLINE double sum_of(const Row& row) {
-  return (row.at[0] + row.at[2]) + (row.at[1] + row.at[3]);
+  return (row.lanes[0] + row.lanes[2]) + (row.lanes[1] + row.lanes[3]);
 }
 
-PatchSums spline(const float* corner, std::size_t stride, double u, double v) {
+PatchSums sum_spline(const float* corner, std::size_t stride, double u, double v) {
   const Doubles d;
-  Weights across;
-  Weights down;
-  weigh(u, across);
-  weigh(v, down);
+  Weights weights_x;
+  Weights weights_y;
+  set_weights(u, weights_x);
+  set_weights(v, weights_y);
   Row height;
   Row along_x;
   Row along_y;
@@ -110,13 +113,13 @@ PatchSums spline(const float* corner, std::size_t stride, double u, double v) {
     Values slope = hn::Zero(d);
     for (int row = 0; row < 4; ++row) {
       const Values c = load(corner + row * stride + i);
-      value = hn::Add(value, hn::Mul(c, hn::Set(d, down.value.at[row])));
-      slope = hn::Add(slope, hn::Mul(c, hn::Set(d, down.slope.at[row])));
+      value = hn::Add(value, hn::Mul(c, hn::Set(d, weights_y.value.lanes[row])));
+      slope = hn::Add(slope, hn::Mul(c, hn::Set(d, weights_y.slope.lanes[row])));
     }
-    const Values weight = hn::Load(d, across.value.at + i);
-    hn::Store(hn::Mul(value, weight), d, height.at + i);
-    hn::Store(hn::Mul(value, hn::Load(d, across.slope.at + i)), d, along_x.at + i);
-    hn::Store(hn::Mul(slope, weight), d, along_y.at + i);
+    const Values weight = hn::Load(d, weights_x.value.lanes + i);
+    hn::Store(hn::Mul(value, weight), d, height.lanes + i);
+    hn::Store(hn::Mul(value, hn::Load(d, weights_x.slope.lanes + i)), d, along_x.lanes + i);
+    hn::Store(hn::Mul(slope, weight), d, along_y.lanes + i);
   });
   return {sum_of(height), sum_of(along_x), sum_of(along_y)};
 }
@@ -130,10 +133,10 @@ HWY_AFTER_NAMESPACE();
 namespace touchtrial::engine {
 namespace {
 
-HWY_EXPORT(bilinear);
-HWY_EXPORT(spline);
+HWY_EXPORT(sum_bilinear);
+HWY_EXPORT(sum_spline);
 
-/// Chooses the processor's target, once.
+/// Chooses the best target for this processor, once.
 void choose_target() {
   if (!hwy::GetChosenTarget().IsInitialized()) {
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
@@ -144,12 +147,12 @@ void choose_target() {
 
 SumOfPatch bilinear_sum() {
   choose_target();
-  return HWY_DYNAMIC_DISPATCH(bilinear);
+  return HWY_DYNAMIC_DISPATCH(sum_bilinear);
 }
 
 SumOfPatch spline_sum() {
   choose_target();
-  return HWY_DYNAMIC_DISPATCH(spline);
+  return HWY_DYNAMIC_DISPATCH(sum_spline);
 }
 
 }  // namespace touchtrial::engine

@@ -1,6 +1,5 @@
-/// \file Sums over the four rows of four heights round a point: the inner part of both rendering
-/// models' forces, on the widest registers that the processor has.
-/// Every model that reads four rows of four heights can use them.
+/// \file Sums over the 4 x 4 heights around a point, the inner loop of both rendering models,
+/// vectorised for every target.
 #pragma once
 
 #include "core/vec.hpp"
@@ -18,31 +17,29 @@ struct PatchSums {
   double along_y = 0.0;  ///< per pixel
 };
 
-/// A sum over a patch. Every instruction set gives the same digits: numbers are added in one order,
-/// and no product is fused with a sum. No allocation, lock or exception. Thread-safe.
+/// A sum over a patch. Results are identical for all instruction sets: the order of additions is
+/// fixed, and no multiply-add is fused. No allocation, lock or exception. Thread-safe.
 /// \param corner  the first height of the first row
-/// \param stride  from one row to the next, heights
-/// \param u,v  the point's way from the second column to the third, and from the second row to the
-///   third, 0 to 1
+/// \param stride  distance of two rows, in heights
+/// \param u,v  position between the second and third column, and row, 0 to 1
 using SumOfPatch = PatchSums (*)(const float* corner, std::size_t stride, double u, double v);
 
-/// The height between the four middle ones, bilinear, and likewise between their tangential forces
-/// in a neighbourhood of 3 (docs/method.md, "Force field"). There a pixel's own height cancels in
-/// each pair of opposite neighbours, so that the force is [1 2 1] / 2 across and [1 0 -1] along its
-/// component.
-/// \throws Error if Highway's library, which the first call loads, cannot be used
+/// Height and tangential force (neighbourhood of 3; docs/method.md, "Force field") interpolated
+/// bilinearly between the four central pixels. A pixel's own height cancels in each pair of
+/// opposite neighbours, so the force is [1 2 1] / 2 across and [1 0 -1] along its component.
+/// \throws Error if Highway's library, loaded by the first call, cannot be loaded
 [[nodiscard]] SumOfPatch bilinear_sum();
 
 /// Value and gradient of the cubic B-spline whose coefficients are the heights.
 /// \throws Error as bilinear_sum
 [[nodiscard]] SumOfPatch spline_sum();
 
-/// The patches of a plane: every point but those in the outer pixels has one.
+/// The 4 x 4 patches of a plane. Points in the outer pixels have none.
 class Patches {
  public:
   /// An empty set: no point has a patch.
   Patches() = default;
-  /// \param heights  row-major, height_px x width_px; must outlive this
+  /// \param heights  row-major, height_px x width_px; must outlive this object
   Patches(std::span<const float> heights, int height_px, int width_px, SumOfPatch sum) noexcept
       : heights_(heights.data()),
         stride_(static_cast<std::size_t>(width_px)),
@@ -54,23 +51,23 @@ class Patches {
     return px.x >= 1.0 && px.y >= 1.0 && px.x < end_px_.x && px.y < end_px_.y;
   }
 
-  /// The sum at a point that has a patch. Prefetches a height two rows above the patch and one two
-  /// rows below, which a hand that moves across rows needs within a few ticks.
+  /// The sum at a point with a patch. Prefetches a height two rows above and two rows below the
+  /// patch, which a hand moving across rows needs within a few ticks.
   [[nodiscard]] PatchSums at(Vec2 px) const noexcept {
     const auto left = static_cast<int>(px.x);
     const auto top = static_cast<int>(px.y);
     const float* corner =
         heights_ + static_cast<std::size_t>(top - 1) * stride_ + static_cast<std::size_t>(left - 1);
-    fetch_beside(corner);
+    prefetch_rows(corner);
     return sum_(corner, stride_, px.x - left, px.y - top);
   }
 
  private:
-  /// The heights may lie beyond the plane.
-  void fetch_beside(const float* corner) const noexcept {
-    const auto at = reinterpret_cast<std::uintptr_t>(corner);
-    __builtin_prefetch(reinterpret_cast<const void*>(at - 2 * stride_ * sizeof *corner));
-    __builtin_prefetch(reinterpret_cast<const void*>(at + 5 * stride_ * sizeof *corner));
+  /// The prefetched addresses may be outside the plane.
+  void prefetch_rows(const float* corner) const noexcept {
+    const auto address = reinterpret_cast<std::uintptr_t>(corner);
+    __builtin_prefetch(reinterpret_cast<const void*>(address - 2 * stride_ * sizeof *corner));
+    __builtin_prefetch(reinterpret_cast<const void*>(address + 5 * stride_ * sizeof *corner));
   }
 
   const float* heights_ = nullptr;

@@ -1,4 +1,3 @@
-/// The two places that turn a ModelKind into code.
 #include "engine/rendering/rendering_model.hpp"
 
 #include "engine/rendering/model_parts.hpp"

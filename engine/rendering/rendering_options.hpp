@@ -1,4 +1,4 @@
-/// \file The options of rendering a texture as force. Source: docs/method.md, "Rendering".
+/// \file The options for rendering a texture as force. Source: docs/method.md, "Rendering".
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ namespace touchtrial::engine {
 /// The rendering models. To add one: docs/add-a-rendering-model.md.
 enum class ModelKind {
   paper,    ///< a wall and force planes, as in the paper
-  surface,  ///< the gradient of one potential
+  surface,  ///< the gradient of a potential
 };
 
 /// Factors from grey levels to forces. Each model uses its own gains and leaves the others at 0.
@@ -37,7 +37,7 @@ inline constexpr std::array kGains = {NamedGain{"tangential_n", &Gains::tangenti
   return gains;
 }
 
-/// The same by decibels of the forces' amplitude.
+/// Scales by decibels of force amplitude.
 [[nodiscard]] inline Gains scaled_db(const Gains& gains, double db) noexcept {
   return scaled(gains, std::pow(10.0, db / 20.0));
 }
@@ -51,15 +51,15 @@ inline constexpr std::array kGains = {NamedGain{"tangential_n", &Gains::tangenti
   return true;
 }
 
-/// Whether stimuli keep their differences in strength. `level` is handled by code that computes
-/// levels, the others by choose_gains.
+/// Whether stimuli are equalised in strength. `level` is applied by the code that computes levels,
+/// the others by choose_gains().
 enum class Equalise { none, rms, level };
 
-/// Load at which the stiffness and the lateral forces of `surface` are stated, N: a typical load of
-/// a hand that explores a texture.
-inline constexpr double kStatedLoadN = 0.7;
+/// The load at which stiffness and lateral forces of `surface` are stated, N: typical of texture
+/// exploration.
+inline constexpr double kReferenceLoadN = 0.7;
 
-/// G of a texture of 0, grey levels: G = 128 + T.
+/// G where T = 0, grey levels: G = 128 + T.
 inline constexpr double kMidGrey = 128.0;
 
 /// The largest neighbourhood of a tangential force that a model evaluates at the stylus.
@@ -78,7 +78,7 @@ struct RenderingOptions {
   double reference_grey = 128.0;  ///< paper: G_ref, grey levels, 0 .. 255
   double friction = 0.0;          ///< surface: friction coefficient mu, >= 0; 0: no friction
   int neighbourhood = 3;          ///< paper: n, odd, 3 .. kMaxNeighbourhood
-  double touchdown_ramp_n = 0.0;  ///< paper: load with the whole lateral force, >= 0; 0: no ramp
+  double touchdown_ramp_n = 0.0;  ///< paper: load at which lateral force is full, >= 0; 0: no ramp
   double max_force_n = 3.3;       ///< limit of the total force's norm, > 0
 
   friend bool operator==(const RenderingOptions&, const RenderingOptions&) = default;

@@ -20,35 +20,34 @@ struct Fade {
   double slope = 0.0;
 };
 
-/// 1 on the plane, 0 beyond the rim, twice continuously differentiable in between.
-Fade fade_at(double place_mm, double side_mm) noexcept {
-  const double beyond_mm = std::max(-place_mm, place_mm - side_mm);
+/// Returns 1 on the plane and 0 beyond the rim, twice continuously differentiable in between.
+Fade fade_at(double coordinate_mm, double side_mm) noexcept {
+  const double beyond_mm = std::max(-coordinate_mm, coordinate_mm - side_mm);
   if (beyond_mm <= 0.0) return {};
   if (beyond_mm >= kRimMm) return {0.0, 0.0};
   const double s = beyond_mm / kRimMm;
-  const double outwards = place_mm < 0.0 ? -1.0 : 1.0;
-  const double rest = 1.0 - s;
-  return {1.0 - s * s * s * (10.0 + s * (6.0 * s - 15.0)),
-          -outwards * 30.0 * s * s * rest * rest / kRimMm};
+  const double sign = coordinate_mm < 0.0 ? -1.0 : 1.0;
+  const double t = 1.0 - s;
+  return {1.0 - s * s * s * (10.0 + s * (6.0 * s - 15.0)), -sign * 30.0 * s * s * t * t / kRimMm};
 }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNearEnough = 2e-7;       // relative; pools have single precision
-constexpr double kSlackOfSurfaces = 1e-6;  // relative; less above the budget is rounding
-constexpr int kMaxTries = 60;
+constexpr double kStiffnessTolerance = 2e-7;      // relative; pools have single precision
+constexpr double kSurfaceBudgetTolerance = 1e-6;  // relative
+constexpr int kMaxIterations = 60;
 
-/// A column of three coefficients, weighted for the value and for the slope at its middle.
+/// Weighted sums of three coefficients of a column, for the value and slope at its middle.
 struct Column {
   float value;
   float slope;
 };
 
-/// The columns of three rows; at an edge the row itself is its mirror image.
+/// The columns of three rows; beyond an edge the outer row is repeated.
 std::vector<Column> columns_around(FieldView field, int y) {
   const int width = field.geometry.width_px;
-  const auto row = [&](int at) {
-    const int inside = std::clamp(at, 0, field.geometry.height_px - 1);
-    return field.heights.data() + static_cast<std::size_t>(inside) * width;
+  const auto row = [&](int index) {
+    const int clamped_y = std::clamp(index, 0, field.geometry.height_px - 1);
+    return field.heights.data() + static_cast<std::size_t>(clamped_y) * width;
   };
   const float* above = row(y - 1);
   const float* middle = row(y);
@@ -63,9 +62,9 @@ std::vector<Column> columns_around(FieldView field, int y) {
   return columns;
 }
 
-/// The spline of a field at its pixel centres; the force is minus the gradient of h. Cost: some 5
-/// ns a pixel.
-SampledField relief_of(FieldView field) {
+/// Samples the spline of a field at its pixel centres; the force is minus the gradient of h. Cost:
+/// about 5 ns per pixel.
+SampledField sample_relief(FieldView field) {
   const PlaneGeometry& plane = field.geometry;
   SampledField relief{plane, {plane.height_px, plane.width_px}};
   for (int y = 0; y < plane.height_px; ++y) {
@@ -83,20 +82,20 @@ SampledField relief_of(FieldView field) {
   return relief;
 }
 
-/// The lateral force at a neighbour of a pixel, at the height at which the pixel meets the stated
-/// load.
-Vec2 force_beside(const FieldSample& middle, const FieldSample& beside, double lateral,
-                  double normal) noexcept {
+/// The lateral force at a neighbour of a pixel, at the height where the pixel has a load of
+/// kReferenceLoadN.
+Vec2 force_at_neighbour(const FieldSample& middle, const FieldSample& neighbour, double lateral,
+                        double normal) noexcept {
   const double load_n =
-      std::max(0.0, kStatedLoadN + normal * (double{beside.height} - middle.height));
-  return {lateral * load_n * beside.force_x, lateral * load_n * beside.force_y};
+      std::max(0.0, kReferenceLoadN + normal * (double{neighbour.height} - middle.height));
+  return {lateral * load_n * neighbour.force_x, lateral * load_n * neighbour.force_y};
 }
 
-/// The Frobenius norm of the in-plane Jacobian at every interior pixel of a relief, in N/mm:
-/// central differences, over the pitch, of the model's lateral force at the height above the plane
-/// at which the pixel in the middle meets a load of kStatedLoadN.
+/// The Frobenius norm of the in-plane Jacobian at every interior pixel of a relief, in N/mm, by
+/// central differences of the lateral force at the height where the central pixel has a load of
+/// kReferenceLoadN.
 /// \param mm_per_grey  alpha
-/// \param wall_n_per_mm  k; 0 leaves only the part that is linear in alpha
+/// \param wall_n_per_mm  k; 0: only the part linear in alpha
 std::vector<float> stiffness_at_load(SampledView relief, double mm_per_grey, double wall_n_per_mm) {
   const int height = relief.geometry.height_px;
   const int width = relief.geometry.width_px;
@@ -108,63 +107,65 @@ std::vector<float> stiffness_at_load(SampledView relief, double mm_per_grey, dou
   for (int y = 1; y < height - 1; ++y) {
     const FieldSample* row = relief.samples.data() + static_cast<std::size_t>(y) * width;
     for (int x = 1; x < width - 1; ++x) {
-      const auto beside = [&](int step) {
-        return force_beside(row[x], row[x + step], lateral, normal);
+      const auto neighbour_force = [&](int step) {
+        return force_at_neighbour(row[x], row[x + step], lateral, normal);
       };
-      const Vec2 along = beside(1) - beside(-1);
-      const Vec2 down = beside(width) - beside(-width);
+      const Vec2 difference_x = neighbour_force(1) - neighbour_force(-1);
+      const Vec2 difference_y = neighbour_force(width) - neighbour_force(-width);
       const double step_n =
-          std::sqrt(along.x * along.x + along.y * along.y + down.x * down.x + down.y * down.y);
+          std::sqrt(difference_x.x * difference_x.x + difference_x.y * difference_x.y +
+                    difference_y.x * difference_y.x + difference_y.y * difference_y.y);
       pool.push_back(static_cast<float>(step_n / (2.0 * relief.geometry.pitch_mm)));
     }
   }
   return pool;
 }
 
-/// Newtons of one grey level per pixel of the relief's force, at the stated load.
-double newtons_per_grey(FieldView field, Gains gains) noexcept {
-  return kStatedLoadN * gains.height_mm / field.geometry.pitch_mm;
+/// Newtons per (grey level per pixel) of the relief's force, at a load of kReferenceLoadN.
+double surface_n_per_grey(FieldView field, Gains gains) noexcept {
+  return kReferenceLoadN * gains.height_mm / field.geometry.pitch_mm;
 }
 
-/// The fields of a study, each with the factor that equalises it. Every stiffness recomputes the
-/// reliefs: choosing alpha takes about six times their time, but saves the memory of all of them.
+/// The fields of a study with their equalising factors. Recomputes the reliefs for every stiffness,
+/// which makes choosing alpha about six times slower but saves the memory of all reliefs.
 class Surfaces {
  public:
   Surfaces(std::span<const FieldView> fields, const RenderingOptions& options)
       : fields_(fields), wall_n_per_mm_(options.stiffness_n_per_mm) {
     rms_.resize(fields.size());
     in_parallel(jobs_for(fields), fields.size(),
-                [&](std::size_t i) { rms_[i] = tangential_rms(relief_of(fields[i]).view()); });
-    factor_ = equalising_factors(rms_, options.equalise);
+                [&](std::size_t i) { rms_[i] = tangential_rms(sample_relief(fields[i]).view()); });
+    factors_ = equalising_factors(rms_, options.equalise);
   }
 
   [[nodiscard]] const std::vector<double>& rms() const noexcept { return rms_; }
-  [[nodiscard]] const std::vector<double>& factors() const noexcept { return factor_; }
+  [[nodiscard]] const std::vector<double>& factors() const noexcept { return factors_; }
 
   /// Stiffness of the normal force, N/mm, per mm per grey level of alpha.
   [[nodiscard]] double normal_stiffness() const {
-    return pooled([&](SampledView relief, double factor) {
+    return pool_stiffness([&](SampledView relief, double factor) {
       return height_stiffness(relief, factor * wall_n_per_mm_);
     });
   }
-  /// Stiffness of the lateral force at the stated load, N/mm, at this alpha.
+  /// Stiffness of the lateral force at a load of kReferenceLoadN, N/mm, for an alpha in mm per grey
+  /// level.
   [[nodiscard]] double lateral_stiffness(double mm_per_grey) const {
-    return pooled([&](SampledView relief, double factor) {
+    return pool_stiffness([&](SampledView relief, double factor) {
       return stiffness_at_load(relief, mm_per_grey * factor, wall_n_per_mm_);
     });
   }
-  /// The same per mm per grey level of alpha, in the limit of small heights.
+  /// Derivative of lateral_stiffness() at alpha = 0.
   [[nodiscard]] double linear_stiffness() const {
-    return pooled(
+    return pool_stiffness(
         [](SampledView relief, double factor) { return stiffness_at_load(relief, factor, 0.0); });
   }
 
  private:
   template <typename StiffnessOf>
-  [[nodiscard]] double pooled(StiffnessOf stiffness_of) const {
+  [[nodiscard]] double pool_stiffness(StiffnessOf stiffness_of) const {
     std::vector<std::vector<float>> pools(fields_.size());
     in_parallel(jobs_for(fields_), fields_.size(), [&](std::size_t i) {
-      if (rms_[i] > 0.0) pools[i] = stiffness_of(relief_of(fields_[i]).view(), factor_[i]);
+      if (rms_[i] > 0.0) pools[i] = stiffness_of(sample_relief(fields_[i]).view(), factors_[i]);
     });
     return typical_stiffness(pools);
   }
@@ -172,12 +173,12 @@ class Surfaces {
   std::span<const FieldView> fields_;
   double wall_n_per_mm_;
   std::vector<double> rms_;
-  std::vector<double> factor_;
+  std::vector<double> factors_;
 };
 
-/// The alpha, at most `limit`, at which the lateral force is as stiff as the budget. Stiffness is
-/// nearly a power of alpha, with an exponent of 1 for small heights and up to 2 for large ones: a
-/// secant method on the logarithms, within a bracket, finds alpha in a few iterations.
+/// The alpha, at most `limit`, at which the lateral stiffness equals the budget. Stiffness is
+/// nearly a power of alpha, with exponents from 1 (small heights) to 2 (large), so a bracketed
+/// secant method on the logarithms converges in a few iterations.
 double lateral_limit(const Surfaces& surfaces, double budget, double limit) {
   const double linear = surfaces.linear_stiffness();
   if (linear == 0.0) return limit;
@@ -185,59 +186,60 @@ double lateral_limit(const Surfaces& surfaces, double budget, double limit) {
   double low = 0.0;
   double high = limit;
   double alpha = budget / linear;
-  double earlier = 0.0;
-  double earlier_short_of = 0.0;
-  for (int i = 0; i < kMaxTries; ++i) {
+  double previous = 0.0;
+  double previous_error = 0.0;
+  for (int i = 0; i < kMaxIterations; ++i) {
     if (!(alpha > low && alpha < high)) alpha = 0.5 * (low + high);
-    const double short_of = std::log(budget / surfaces.lateral_stiffness(alpha));
-    if (std::abs(short_of) <= kNearEnough) return alpha;
-    (short_of > 0.0 ? low : high) = alpha;
-    const double power = (earlier_short_of - short_of) / std::log(alpha / earlier);
-    const double step = short_of / (earlier > 0.0 ? std::clamp(power, 0.5, 4.0) : 1.0);
-    earlier = alpha;
-    earlier_short_of = short_of;
+    const double log_error = std::log(budget / surfaces.lateral_stiffness(alpha));
+    if (std::abs(log_error) <= kStiffnessTolerance) return alpha;
+    (log_error > 0.0 ? low : high) = alpha;
+    const double power = (previous_error - log_error) / std::log(alpha / previous);
+    const double step = log_error / (previous > 0.0 ? std::clamp(power, 0.5, 4.0) : 1.0);
+    previous = alpha;
+    previous_error = log_error;
     alpha *= std::exp(step);
   }
   return low;
 }
 
-double within_budget(const Surfaces& surfaces, double budget) {
+double alpha_within_budget(const Surfaces& surfaces, double budget) {
   const double normal = surfaces.normal_stiffness();
   const double limit = lateral_limit(surfaces, budget, normal > 0.0 ? budget / normal : kInfinity);
   return limit < kInfinity ? limit : 0.0;
 }
 
-StudyGains gains_of_surfaces(std::span<const FieldView> fields, const RenderingOptions& options) {
+StudyGains choose_surface_gains(std::span<const FieldView> fields,
+                                const RenderingOptions& options) {
   const Surfaces surfaces(fields, options);
   const double budget = options.texture_stiffness_n_per_mm;
   StudyGains gains;
   double alpha = 0.0;
   if (options.gains) {
     alpha = explicit_factor(options.gains->height_mm, surfaces.rms(), options.equalise);
-    const double stiffest =
+    const double max_stiffness =
         std::max(surfaces.lateral_stiffness(alpha), alpha * surfaces.normal_stiffness());
-    gains.over_budget = stiffest > budget * (1.0 + kSlackOfSurfaces);
+    gains.over_budget = max_stiffness > budget * (1.0 + kSurfaceBudgetTolerance);
   } else {
-    alpha = within_budget(surfaces, budget);
+    alpha = alpha_within_budget(surfaces, budget);
   }
   for (const double factor : surfaces.factors()) {
-    gains.of_field.push_back({.height_mm = alpha * factor});
+    gains.per_field.push_back({.height_mm = alpha * factor});
   }
   return gains;
 }
 
-TextureField field_of_surface(Plane<double> smooth, const RenderingOptions& options) {
+TextureField make_surface_field(Plane<double> smooth, const RenderingOptions& options) {
   const PlaneGeometry geometry{options.pitch_mm, smooth.height(), smooth.width()};
-  const Plane<double> exact = cubic_spline_coefficients(std::move(smooth));
-  return TextureField({.geometry = geometry, .model = ModelKind::surface}, converted<float>(exact));
+  const Plane<double> coefficients = cubic_spline_coefficients(std::move(smooth));
+  return TextureField({.geometry = geometry, .model = ModelKind::surface},
+                      converted<float>(coefficients));
 }
 
-FieldStatistics statistics_of_surface(FieldView field, Gains gains,
-                                      const RenderingOptions& options) {
-  const SampledField relief = relief_of(field);
+FieldStatistics surface_statistics(FieldView field, Gains gains, const RenderingOptions& options) {
+  const SampledField relief = sample_relief(field);
   const SampledView view = relief.view();
   require_finite_rms(tangential_rms(view), height_rms(view));
-  FieldStatistics statistics = lateral_statistics(view, newtons_per_grey(field, gains));
+  FieldStatistics statistics = lateral_statistics(view, surface_n_per_grey(field, gains));
   statistics.normal_rms_n = options.stiffness_n_per_mm * gains.height_mm * height_rms(view);
   const std::vector<float> stiffness =
       stiffness_at_load(view, gains.height_mm, options.stiffness_n_per_mm);
@@ -259,16 +261,16 @@ SurfaceModel::SurfaceModel(FieldView field, const RenderingOptions& options, Gai
       patches_(mm_per_grey_ == 0.0 ? Patches{}
                                    : Patches(field.heights, field.geometry.height_px,
                                              field.geometry.width_px, spline_sum())),
-      // A B-spline is a weighted mean of its coefficients, and so never above the highest.
+      // A B-spline is a weighted mean of its coefficients, so it never exceeds the highest.
       reach_mm_(mm_per_grey_ > 0.0 ? std::max(0.0, mm_per_grey_ * field.highest) : 0.0) {}
 
 Vec3 SurfaceModel::force_n(const Vec3& position, const Vec3& velocity_mm_s,
                            Bristle& bristle) const noexcept {
-  const Vec3 position_mm = by_number(position);
-  const bool in_reach = position_mm.z < reach_mm_;
+  const Vec3 position_mm = copy_by_component(position);
+  const bool is_in_reach = position_mm.z < reach_mm_;
   Relief relief;
   double elastic_n = 0.0;
-  if (in_reach && is_finite(position_mm) && is_finite(velocity_mm_s)) {
+  if (is_in_reach && is_finite(position_mm) && is_finite(velocity_mm_s)) {
     relief = relief_at(position_mm.x, position_mm.y);
     elastic_n = stiffness_n_per_mm_ * (relief.height_mm - position_mm.z);
   }
@@ -284,7 +286,7 @@ Vec3 SurfaceModel::force_n(const Vec3& position, const Vec3& velocity_mm_s,
     force_n.x += friction_n.x;
     force_n.y += friction_n.y;
   }
-  return limited_in_norm(force_n, max_force_n_);
+  return limit_norm(force_n, max_force_n_);
 }
 
 inline SurfaceModel::Relief SurfaceModel::relief_at(double x_mm, double y_mm) const noexcept {
@@ -301,21 +303,20 @@ SurfaceModel::Relief SurfaceModel::relief_at_edge(double x_mm, double y_mm) cons
   if (mm_per_grey_ == 0.0) return {};
   const PlaneGeometry& plane = field_.geometry;
   const bool on_plane = plane.contains(x_mm, y_mm);
-  const Fade across = on_plane ? Fade{} : fade_at(x_mm, plane.width_mm());
-  const Fade down = on_plane ? Fade{} : fade_at(y_mm, plane.height_mm());
-  if (across.value == 0.0 || down.value == 0.0) return {};
+  const Fade fade_x = on_plane ? Fade{} : fade_at(x_mm, plane.width_mm());
+  const Fade fade_y = on_plane ? Fade{} : fade_at(y_mm, plane.height_mm());
+  if (fade_x.value == 0.0 || fade_y.value == 0.0) return {};
   const Vec2 px = plane.to_px(x_mm, y_mm);
   const PatchSums h = spline_at(field_.heights, plane.height_px, plane.width_px, px.x, px.y);
   const double height_mm = mm_per_grey_ * h.value;
-  return {height_mm * across.value * down.value,
-          {(slope_per_grey_ * h.along_x * across.value + height_mm * across.slope) * down.value,
-           (slope_per_grey_ * h.along_y * down.value + height_mm * down.slope) * across.value}};
+  return {height_mm * fade_x.value * fade_y.value,
+          {(slope_per_grey_ * h.along_x * fade_x.value + height_mm * fade_x.slope) * fade_y.value,
+           (slope_per_grey_ * h.along_y * fade_y.value + height_mm * fade_y.slope) * fade_x.value}};
 }
 
-// What make_texture_field, choose_gains, field_statistics and lateral_field do for this model.
-
 ModelParts surface_parts() noexcept {
-  return {field_of_surface, relief_of, gains_of_surfaces, statistics_of_surface, newtons_per_grey};
+  return {make_surface_field, sample_relief, choose_surface_gains, surface_statistics,
+          surface_n_per_grey};
 }
 
 }  // namespace touchtrial::engine

@@ -1,5 +1,5 @@
-/// \file Rendering model `surface`: the gradient of one potential, so that no closed path gains
-/// energy, and friction on it. Source: docs/method.md, "Rendering".
+/// \file Rendering model `surface`: the gradient of a potential, so that closed paths gain no
+/// energy, plus friction. Source: docs/method.md, "Rendering".
 #pragma once
 
 #include "core/vec.hpp"
@@ -8,64 +8,66 @@
 
 namespace touchtrial::engine {
 
-/// Friction as a bristle: a spring from the stylus to its anchor on the plane, which slips when
-/// stretched too far. One bristle belongs to one presentation, and stores the state between ticks.
-/// It depends on positions only, never on time: a path gives the same forces at any speed. It is
-/// passive: it stores only energy from the hand, and slipping dissipates it.
+/// The bristle model of friction: a spring from the stylus to an anchor on the plane, which slips
+/// beyond a maximum force. Stores the friction state of one presentation. Forces depend on the
+/// path, not on speed. Passive: it stores energy from the hand, and slipping dissipates it.
 class Bristle {
  public:
   /// The friction on a stylus that has moved to a point of the plane. The first point after a
-  /// release becomes the anchor. No allocation, lock or exception.
-  /// \param at_mm  finite
+  /// release is the new anchor. No allocation, lock or exception.
+  /// \param position_mm  finite
   /// \param limit_n  mu * F_N, >= 0: the bristle slips at this force
   /// \param stiffness_n_per_mm  of the bristle, > 0
-  /// \return of norm <= limit_n, within rounding
-  [[nodiscard]] Vec2 friction_n(Vec2 at_mm, double limit_n, double stiffness_n_per_mm) noexcept {
-    if (!holds_) anchor_mm_ = at_mm;
-    holds_ = true;
-    Vec2 stretch_mm = at_mm - anchor_mm_;
+  /// \return force with norm <= limit_n, within rounding
+  [[nodiscard]] Vec2 friction_n(Vec2 position_mm, double limit_n,
+                                double stiffness_n_per_mm) noexcept {
+    if (!is_anchored_) anchor_mm_ = position_mm;
+    is_anchored_ = true;
+    Vec2 stretch_mm = position_mm - anchor_mm_;
     const double spring_n = stiffness_n_per_mm * norm(stretch_mm);
     if (spring_n > limit_n) {
       stretch_mm = (limit_n / spring_n) * stretch_mm;
-      anchor_mm_ = at_mm - stretch_mm;
+      anchor_mm_ = position_mm - stretch_mm;
     }
     return -stiffness_n_per_mm * stretch_mm;
   }
 
-  /// The stylus has left the plane.
-  void release() noexcept { holds_ = false; }
+  /// Call when the stylus leaves the plane.
+  void release() noexcept { is_anchored_ = false; }
 
  private:
   Vec2 anchor_mm_;
-  bool holds_ = false;
+  bool is_anchored_ = false;
 };
 
-/// Width of the rim beyond the plane's edge in which the texture fades into the flat wall, mm. A
-/// step there would be an infinite force, and feed energy to a hand that crosses it repeatedly.
+/// Width of the rim around the plane in which the texture fades into the flat wall, mm. A step
+/// there would cause an infinite force and feed energy to a hand that crosses it repeatedly.
 inline constexpr double kRimMm = 2.0;
 
 /// The force on the stylus from one texture, in the frame of PaperModel: z out of the plane towards
 /// the hand, depth = -z.
 class SurfaceModel {
  public:
-  /// Reads no coefficient.
+  /// Reads no coefficients.
   /// \param field  its heights must outlive the model
   /// \param options,gains  finite, in the ranges of their types
-  /// \throws Error if Highway's library cannot be used
+  /// \throws Error if Highway's library cannot be loaded
   SurfaceModel(FieldView field, const RenderingOptions& options, Gains gains);
 
   /// With e = depth + alpha * h(x, y), the potential is U = k/2 * max(0, e)^2. Contact lasts while
-  /// e > 0; then the force is -grad U: k * e across the plane and -k * e * alpha * grad h along it.
-  /// h is the spline through the field; beyond the edges it is mirrored, and fades to 0 over
-  /// kRimMm, where the flat wall begins. Damping subtracts damping * v_z from the normal force, but
-  /// never below 0, so it only takes energy. With friction > 0 the bristle adds up to
-  /// friction * F_N against the stroke, with a stiffness (as Frobenius norm) of the whole stiffness
-  /// budget. The norm of the total is limited to max_force_n; its direction is kept.
-  /// Without contact the force is zero and the bristle is released; the field is not read where no
-  /// surface could reach the hand. A position or velocity that is not finite is no contact.
-  /// No allocation, lock or exception. Any number of threads, each with its own bristle. Cost: less
-  /// than twice PaperModel's.
-  /// \param bristle  of this presentation; not used without friction
+  /// e > 0; then the force is -grad U: k * e normal to the plane and -k * e * alpha * grad h along
+  /// it. h is the spline through the field; beyond the edges it is mirrored and fades to the flat
+  /// wall over kRimMm. Damping subtracts damping * v_z from the normal force, but never below 0, so
+  /// it only dissipates energy. With friction > 0 the bristle adds up to friction * F_N against the
+  /// stroke, with a stiffness (Frobenius norm) equal to the stiffness budget. The norm of the total
+  /// is limited to max_force_n; its direction is kept.
+  ///
+  /// Without contact the force is zero and the bristle is released. The field is not read above its
+  /// highest point. A position or velocity that is not finite means no contact.
+  ///
+  /// Real-time safe: no allocation, lock or exception. Thread-safe with one bristle per thread.
+  /// Cost: less than twice the cost of PaperModel.
+  /// \param bristle  of this presentation; unused without friction
   [[nodiscard]] Vec3 force_n(const Vec3& position_mm, const Vec3& velocity_mm_s,
                              Bristle& bristle) const noexcept;
 
@@ -76,7 +78,7 @@ class SurfaceModel {
     Vec2 slope;
   };
   [[nodiscard]] Relief relief_at(double x_mm, double y_mm) const noexcept;
-  /// The same where the point has no patch: near the edges and beyond.
+  /// The same for points without a patch, near and beyond the edges.
   [[nodiscard]] Relief relief_at_edge(double x_mm, double y_mm) const noexcept;
 
   FieldView field_;
@@ -86,7 +88,7 @@ class SurfaceModel {
   double bristle_n_per_mm_;
   double max_force_n_;
   double mm_per_grey_;
-  double slope_per_grey_;  ///< mm_per_grey_ for a change per pixel
+  double slope_per_grey_;  ///< mm_per_grey_ / pitch
   Patches patches_;        ///< of the coefficients
   double reach_mm_;        ///< no force at or beyond this height above the plane
 };

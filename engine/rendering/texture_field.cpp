@@ -24,12 +24,12 @@ void check_options(const RenderingOptions& options) {
 
 /// \throws std::invalid_argument if the fields cannot be added
 void check_parts(std::span<const FieldWithGains> parts) {
-  if (parts.empty()) throw std::invalid_argument("applied_sum: there is no field");
+  if (parts.empty()) throw std::invalid_argument("sum_with_gains: there is no field");
   const FieldView& first = parts.front().field;
   for (const FieldWithGains& part : parts) {
     if (part.field.empty() || part.field.geometry != first.geometry ||
         part.field.model != first.model || part.field.neighbourhood != first.neighbourhood) {
-      throw std::invalid_argument("applied_sum: a field is empty or differs from the first");
+      throw std::invalid_argument("sum_with_gains: a field is empty or differs from the first");
     }
   }
 }
@@ -48,11 +48,14 @@ double highest_of(FieldView field) {
   return highest_sample(field.heights);
 }
 
-TextureField::TextureField(const FieldView& like, Plane<float> heights, Plane<float> other_slopes)
-    : like_{.geometry = like.geometry, .model = like.model, .neighbourhood = like.neighbourhood},
+TextureField::TextureField(const FieldView& properties, Plane<float> heights,
+                           Plane<float> slope_heights)
+    : properties_{.geometry = properties.geometry,
+                  .model = properties.model,
+                  .neighbourhood = properties.neighbourhood},
       heights_(std::move(heights)),
-      other_slopes_(std::move(other_slopes)) {
-  if (!heights_.empty()) like_.highest = highest_of(view());
+      slope_heights_(std::move(slope_heights)) {
+  if (!heights_.empty()) properties_.highest = highest_of(view());
 }
 
 TextureField make_texture_field(const Plane<double>& texture, const RenderingOptions& options) {
@@ -63,7 +66,7 @@ TextureField make_texture_field(const Plane<double>& texture, const RenderingOpt
       .make_field(gaussian_filtered(texture, to_px(options.filter_mm, options.pitch_mm)), options);
 }
 
-TextureField applied_sum(std::span<const FieldWithGains> parts) {
+TextureField sum_with_gains(std::span<const FieldWithGains> parts) {
   check_parts(parts);
   const FieldView& first = parts.front().field;
   const PlaneGeometry plane = first.geometry;

@@ -12,11 +12,10 @@ namespace {
 constexpr double kCautiousRelaxation = 1.8;
 constexpr double kEagerRelaxation = 1.5;
 constexpr double kEagerMomentum = 0.3;
-/// z starts as this share of the image's gradient.
-constexpr double kFirstShare = 0.5;
+/// Initial z, as a share of the image's gradient.
+constexpr double kInitialShare = 0.5;
 
-/// The first `count` coefficients of the spectrum of minus the second difference on a ring of n
-/// samples.
+/// The first `count` eigenvalues of the negative second difference on a ring of n samples.
 template <typename Real>
 std::vector<Real> ring_laplacian(int n, int count) {
   std::vector<Real> spectrum(static_cast<std::size_t>(count));
@@ -28,7 +27,7 @@ std::vector<Real> ring_laplacian(int n, int count) {
   return spectrum;
 }
 
-/// Watches nothing of a step.
+/// Observes nothing.
 struct NoObserver {
   struct Sums {
     Sums& operator+=(const Sums&) noexcept { return *this; }
@@ -36,9 +35,9 @@ struct NoObserver {
 
   explicit NoObserver(std::size_t, double) {}
   template <typename Real>
-  void before(const AdmmRow<Real>&) {}
+  void on_step_start(const AdmmRow<Real>&) {}
   template <typename Real>
-  void after(const AdmmRow<Real>&) {}
+  void on_step_end(const AdmmRow<Real>&) {}
 
   Sums sums;
 };
@@ -63,7 +62,7 @@ struct SplitRow {
   std::vector<Real> b_x, b_y, w_x, w_y;
 };
 
-/// Sums, over rows, squared norms of a step.
+/// Sums squared norms of a step over rows.
 template <typename Real>
 class StepNorms {
  public:
@@ -80,18 +79,21 @@ class StepNorms {
     }
   };
 
-  StepNorms(std::size_t width, double penalty) : penalty_(penalty), before_(width), after_(width) {}
+  StepNorms(std::size_t width, double penalty)
+      : penalty_(penalty), start_row_(width), end_row_(width) {}
 
-  void before(const AdmmRow<Real>& row) { before_.split(row, penalty_); }
-  void after(const AdmmRow<Real>& row) {
-    after_.split(row, penalty_);
+  void on_step_start(const AdmmRow<Real>& row) { start_row_.split(row, penalty_); }
+  void on_step_end(const AdmmRow<Real>& row) {
+    end_row_.split(row, penalty_);
     const auto squared = [](double x, double y) { return x * x + y * y; };
-    for (std::size_t i = 0; i < after_.w_x.size(); ++i) {
-      sums.w += squared(after_.w_x[i], after_.w_y[i]);
-      sums.b += squared(after_.b_x[i], after_.b_y[i]);
-      sums.change_of_w += squared(after_.w_x[i] - before_.w_x[i], after_.w_y[i] - before_.w_y[i]);
-      sums.change_of_b += squared(after_.b_x[i] - before_.b_x[i], after_.b_y[i] - before_.b_y[i]);
-      const Real right = row.image[i + 1 == after_.w_x.size() ? 0 : i + 1];
+    for (std::size_t i = 0; i < end_row_.w_x.size(); ++i) {
+      sums.w += squared(end_row_.w_x[i], end_row_.w_y[i]);
+      sums.b += squared(end_row_.b_x[i], end_row_.b_y[i]);
+      sums.change_of_w +=
+          squared(end_row_.w_x[i] - start_row_.w_x[i], end_row_.w_y[i] - start_row_.w_y[i]);
+      sums.change_of_b +=
+          squared(end_row_.b_x[i] - start_row_.b_x[i], end_row_.b_y[i] - start_row_.b_y[i]);
+      const Real right = row.image[i + 1 == end_row_.w_x.size() ? 0 : i + 1];
       sums.image += squared(right - row.image[i], row.image_below[i] - row.image[i]);
     }
   }
@@ -100,7 +102,7 @@ class StepNorms {
 
  private:
   double penalty_;
-  SplitRow<Real> before_, after_;
+  SplitRow<Real> start_row_, end_row_;
 };
 
 double ratio_of_norms(double squared, double reference_squared) {
@@ -117,25 +119,25 @@ TvGaborAdmm<Real>::TvGaborAdmm(const TvGaborProblem<Real>& problem, TorusPlane<R
       laplacian_x_(ring_laplacian<Real>(problem.image.width(), problem.image.width())),
       factors_(problem.factors.size()),
       z_(problem.image.height(), problem.image.width()),
-      former_(problem.image.height(), problem.image.width()) {
-  plane_.in_blocks([this](const RowBlock& block) {
+      previous_map_(problem.image.height(), problem.image.width()) {
+  plane_.for_each_block([this](const RowBlock& block) {
     for (int y = block.begin; y < block.end; ++y) {
       const auto x_row = z_.x.row(y), y_row = z_.y.row(y);
       gradient_of_row<Real>(problem_.image.row(y), problem_.image.row(row_below(y)), x_row, y_row);
-      for (Real& sample : x_row) sample *= static_cast<Real>(kFirstShare);
-      for (Real& sample : y_row) sample *= static_cast<Real>(kFirstShare);
+      for (Real& sample : x_row) sample *= static_cast<Real>(kInitialShare);
+      for (Real& sample : y_row) sample *= static_cast<Real>(kInitialShare);
     }
   });
 }
 
 template <typename Real>
-void TvGaborAdmm<Real>::start_again(double penalty) {
+void TvGaborAdmm<Real>::restart(double penalty) {
   const RestartNumbers<Real> numbers{
-      .former_limit = static_cast<Real>(1.0 / (penalty_ > 0.0 ? penalty_ : penalty)),
+      .previous_limit = static_cast<Real>(1.0 / (penalty_ > 0.0 ? penalty_ : penalty)),
       .limit = static_cast<Real>(1.0 / penalty)};
   penalty_ = penalty;
   set_factors();
-  plane_.in_blocks([&](const RowBlock& block) {
+  plane_.for_each_block([&](const RowBlock& block) {
     typename TorusPlane<Real>::DivergenceRows targets(plane_, block);
     for (int y = block.begin; y < block.end; ++y) {
       AdmmRow<Real> row = row_of(y);
@@ -146,59 +148,60 @@ void TvGaborAdmm<Real>::start_again(double penalty) {
     }
   });
   plane_.finish_divergence();
-  has_former_ = false;
+  has_previous_ = false;
 }
 
 template <typename Real>
 void TvGaborAdmm<Real>::step(AdmmPace pace) {
-  map<NoObserver>(pace, false);
+  apply_map<NoObserver>(pace, false);
 }
 
 template <typename Real>
-void TvGaborAdmm<Real>::last_step() {
-  map<NoObserver>(AdmmPace::cautious, true);
+void TvGaborAdmm<Real>::final_step() {
+  apply_map<NoObserver>(AdmmPace::cautious, true);
 }
 
 template <typename Real>
-AdmmResiduals TvGaborAdmm<Real>::measured_last_step() {
-  const auto sums = map<StepNorms<Real>>(AdmmPace::cautious, true);
+AdmmResiduals TvGaborAdmm<Real>::measured_final_step() {
+  const auto sums = apply_map<StepNorms<Real>>(AdmmPace::cautious, true);
   return {ratio_of_norms(sums.change_of_b, std::max(sums.w, sums.image)),
           ratio_of_norms(sums.change_of_w, sums.b)};
 }
 
-/// One step. The u-step in terms of v = f - u is diagonal in the Fourier basis, and without K =
-/// M^-1, so that frequencies that M removes are exact.
+/// Takes one step. The u-step in terms of v = f - u is diagonal in the Fourier basis and does not
+/// use K = M^-1, so it is exact at frequencies that M removes.
 template <typename Real>
-template <typename Watch>
-typename Watch::Sums TvGaborAdmm<Real>::map(AdmmPace pace, bool is_last) {
+template <typename Observer>
+typename Observer::Sums TvGaborAdmm<Real>::apply_map(AdmmPace pace, bool is_last) {
   plane_.filter(factors_);
   const bool is_eager = pace == AdmmPace::eager;
   const AdmmNumbers<Real> numbers{
       .relaxation = static_cast<Real>(is_eager ? kEagerRelaxation : kCautiousRelaxation),
       .limit = static_cast<Real>(1.0 / penalty_),
-      .momentum = static_cast<Real>(is_eager && has_former_ ? kEagerMomentum : 0.0),
-      .keep_former = is_eager,
-      .b_alone = is_last};
-  const auto sums = plane_.template sum_of_blocks<typename Watch::Sums>([&](const RowBlock& block) {
-    typename TorusPlane<Real>::Rows texture(plane_, block);
-    typename TorusPlane<Real>::DivergenceRows targets(plane_, block);
-    Watch watch(plane_.width(), penalty_);
-    for (int y = block.begin; y < block.end; ++y) {
-      texture.go_to(y);
-      AdmmRow<Real> row = row_of(y);
-      row.texture = texture.row();
-      row.texture_below = texture.below();
-      row.target_x = targets.along_x();
-      row.target_y = targets.along_y();
-      watch.before(row);
-      row_kernels<Real>().admm(row, plane_.width(), numbers);
-      watch.after(row);
-      targets.next();
-    }
-    return watch.sums;
-  });
+      .momentum = static_cast<Real>(is_eager && has_previous_ ? kEagerMomentum : 0.0),
+      .store_previous = is_eager,
+      .b_only = is_last};
+  const auto sums =
+      plane_.template sum_of_blocks<typename Observer::Sums>([&](const RowBlock& block) {
+        typename TorusPlane<Real>::Rows texture(plane_, block);
+        typename TorusPlane<Real>::DivergenceRows targets(plane_, block);
+        Observer observer(plane_.width(), penalty_);
+        for (int y = block.begin; y < block.end; ++y) {
+          texture.go_to(y);
+          AdmmRow<Real> row = row_of(y);
+          row.texture = texture.row();
+          row.texture_below = texture.row_below();
+          row.target_x = targets.along_x();
+          row.target_y = targets.along_y();
+          observer.on_step_start(row);
+          row_kernels<Real>().admm(row, plane_.width(), numbers);
+          observer.on_step_end(row);
+          targets.next();
+        }
+        return observer.sums;
+      });
   plane_.finish_divergence();
-  has_former_ = is_eager;
+  has_previous_ = is_eager;
   return sums;
 }
 
@@ -209,7 +212,7 @@ void TvGaborAdmm<Real>::set_factors() {
   const Real* const spectrum = problem_.factors.data();
   const Real* const along_y = laplacian_y_.data();
   Real* const factors = factors_.data();
-  plane_.in_column_blocks([&](std::size_t block) {
+  plane_.for_each_column_block([&](std::size_t block) {
     plane_.column_blocks().for_each(block, [&](std::size_t i, int y, int x) {
       const Real weight = penalty * spectrum[i];
       const Real laplacian = along_y[y] + laplacian_x_[static_cast<std::size_t>(x)];
@@ -223,7 +226,7 @@ int TvGaborAdmm<Real>::row_below(int y) const noexcept {
   return y + 1 == problem_.image.height() ? 0 : y + 1;
 }
 
-/// Without texture and targets.
+/// Leaves texture and targets empty.
 template <typename Real>
 AdmmRow<Real> TvGaborAdmm<Real>::row_of(int y) noexcept {
   return {.image = problem_.image.row(y).data(),
@@ -232,8 +235,8 @@ AdmmRow<Real> TvGaborAdmm<Real>::row_of(int y) noexcept {
           .texture_below = nullptr,
           .z_x = z_.x.row(y).data(),
           .z_y = z_.y.row(y).data(),
-          .former_x = former_.x.row(y).data(),
-          .former_y = former_.y.row(y).data(),
+          .previous_x = previous_map_.x.row(y).data(),
+          .previous_y = previous_map_.y.row(y).data(),
           .target_x = nullptr,
           .target_y = nullptr};
 }

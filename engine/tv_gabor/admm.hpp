@@ -1,5 +1,5 @@
-/// \file The fast TV-Gabor solver: over-relaxed ADMM on w = grad u = grad f - grad v, with a little
-/// momentum. Source: docs/method.md, "TV-Gabor".
+/// \file The TV-Gabor iteration: over-relaxed ADMM on w = grad u = grad f - grad v, with momentum.
+/// Source: docs/method.md, "TV-Gabor".
 /// Private to engine/tv_gabor.
 #pragma once
 
@@ -12,47 +12,45 @@
 
 namespace touchtrial::engine {
 
-/// The pace of an iteration: cautious steps relax more, without momentum; eager ones relax less,
-/// with momentum.
+/// The pace of an iteration: cautious steps over-relax more, without momentum; eager steps
+/// over-relax less, with momentum.
 enum class AdmmPace { cautious, eager };
 
-/// The distance of a step from the fixed point: the changes of the scaled multiplier and of w, each
-/// relative to a reference size. The image's gradient is among the references, because a cartoon
-/// that becomes flat leaves no other. After B. Wohlberg, "ADMM penalty parameter selection by
-/// residual balancing", 2017.
+/// The residuals of a step: the changes of the scaled multiplier and of w, relative to reference
+/// norms. The image's gradient is one reference, because a cartoon may become flat. After B.
+/// Wohlberg, "ADMM penalty parameter selection by residual balancing", 2017.
 struct AdmmResiduals {
   double primal = 0.0;  ///< |change of b| / max(|w|, |grad f|)
   double dual = 0.0;    ///< |change of w| / |b|
 };
 
-/// The iteration's state is one field, z = w + b: the scaled multiplier b is z with its vectors
-/// shortened to 1 / penalty, and w, which becomes the cartoon's gradient, is the rest. The
-/// iteration works on the texture v, not on the cartoon u: the image enters through its gradient
-/// only, which is exact, so that rounding is relative to the texture and not to the image's 255
-/// grey levels. (Float needs that: an error of u reaches v multiplied by penalty / lambda, about
-/// 100.) A step is one pass over the columns of the half transformed texture, and one over rows,
-/// which reads and writes each plane once. Memory with problem and transform: 28 bytes a sample of
-/// the torus in float, 56 in double.
+/// The state of the iteration is a field z = w + b. The scaled multiplier b is z with vectors
+/// clipped to 1 / penalty, and w = z - b converges to the cartoon's gradient. The iteration uses
+/// the texture v, not the cartoon u, and only the exact gradient of the image, so that rounding is
+/// relative to the texture and not to 255 grey levels. (In float, an error of u would enter v
+/// multiplied by penalty / lambda, about 100.) A step is one pass over the columns of the
+/// transformed texture and one pass over rows, which reads and writes each plane once. Memory with
+/// problem and transform: 28 bytes per sample of the torus in float, 56 in double.
 template <typename Real>
 class TvGaborAdmm {
  public:
-  /// Starts at z = grad f / 2. Keeps references to problem and plane; others may use the plane
-  /// between steps, see start_again().
+  /// Starts at z = grad f / 2. Keeps references to problem and plane; other code may use the plane
+  /// between steps, see restart().
   /// \param plane  of the problem's size
   TvGaborAdmm(const TvGaborProblem<Real>& problem, TorusPlane<Real>& plane);
 
-  /// Call this before the first step, and again before a step if others have used the plane, or z
-  /// has changed. Forgets the momentum. If the penalty changes, w and the unscaled multiplier stay.
+  /// Call before the first step, and after other code has used the plane or changed z. Resets the
+  /// momentum. Keeps w and the unscaled multiplier if the penalty changes.
   /// \param penalty  rho, 1 / grey levels, > 0
-  void start_again(double penalty);
+  void restart(double penalty);
   void step(AdmmPace pace);
-  /// A step without momentum, after which the plane holds -div b for a certificate: start again.
-  void last_step();
-  /// The same, with residuals.
-  [[nodiscard]] AdmmResiduals measured_last_step();
+  /// A step without momentum that leaves -div b in the plane, for a certificate; then call
+  /// restart().
+  void final_step();
+  /// Takes the same step and returns its residuals.
+  [[nodiscard]] AdmmResiduals measured_final_step();
 
-  /// Continues an iteration on the same image from another precision, where z() and penalty() were
-  /// these.
+  /// Continues an iteration on the same image from the state of another precision.
   template <typename Other>
   void resume(const VectorField<Other>& z, double penalty) {
     penalty_ = penalty;
@@ -61,24 +59,24 @@ class TvGaborAdmm {
   }
 
   [[nodiscard]] double penalty() const noexcept { return penalty_; }
-  /// Minus a dual point is penalty() * z, with vectors longer than 1 shortened to 1.
+  /// penalty() * z with vectors clipped to 1 is minus a dual point.
   [[nodiscard]] const VectorField<Real>& z() const noexcept { return z_; }
 
  private:
-  template <typename Watch>
-  typename Watch::Sums map(AdmmPace pace, bool is_last);
+  template <typename Observer>
+  typename Observer::Sums apply_map(AdmmPace pace, bool is_last);
   void set_factors();
   [[nodiscard]] int row_below(int y) const noexcept;
   [[nodiscard]] AdmmRow<Real> row_of(int y) noexcept;
 
   const TvGaborProblem<Real>& problem_;
   TorusPlane<Real>& plane_;
-  double penalty_ = 0.0;                         // none yet
+  double penalty_ = 0.0;                         // 0 before restart()
   std::vector<Real> laplacian_y_, laplacian_x_;  // |grad^|^2 is their sum
   std::vector<Real> factors_;                    // of a step's filter
   VectorField<Real> z_;
-  VectorField<Real> former_;  // the map's last value
-  bool has_former_ = false;
+  VectorField<Real> previous_map_;  // previous value of the map
+  bool has_previous_ = false;
 };
 
 }  // namespace touchtrial::engine

@@ -35,9 +35,9 @@ Patch zero_mean_gabor_patch(const GaborComponent& component) {
   std::size_t i = 0;
   for (int y = -kPatchRadius; y <= kPatchRadius; ++y) {
     for (int x = -kPatchRadius; x <= kPatchRadius; ++x, ++i) {
-      const double along = x * std::cos(direction) + y * std::sin(direction);
+      const double distance = x * std::cos(direction) + y * std::sin(direction);
       patch[i] = std::exp(-(x * x + y * y) / (2.0 * kSigma_px * kSigma_px)) *
-                 std::cos(radians_per_px * along);
+                 std::cos(radians_per_px * distance);
     }
   }
   const double mean = std::accumulate(patch.begin(), patch.end(), 0.0) / patch.size();
@@ -59,26 +59,26 @@ struct Wave {
   std::vector<double> cosine, sine;
 };
 
-/// Waves of all offsets from a patch's centre to its edge.
-std::vector<Wave> waves(int count, int length) {
-  std::vector<Wave> all;
-  for (int offset = 0; offset <= kPatchRadius; ++offset) all.emplace_back(offset, count, length);
-  return all;
+/// Waves for all offsets from a patch's centre to its edge.
+std::vector<Wave> make_waves(int count, int length) {
+  std::vector<Wave> result;
+  for (int offset = 0; offset <= kPatchRadius; ++offset) result.emplace_back(offset, count, length);
+  return result;
 }
 
-/// to += factor * from
-void add(double factor, const std::vector<double>& from, std::vector<double>& to) {
-  for (std::size_t i = 0; i < to.size(); ++i) to[i] += factor * from[i];
+/// target += factor * source
+void add(double factor, const std::vector<double>& source, std::vector<double>& target) {
+  for (std::size_t i = 0; i < target.size(); ++i) target[i] += factor * source[i];
 }
 
-/// Adds |g^|^2, by the sum that defines it. A patch is the same in opposite places, so its
-/// transform is real, and rows above the centre add what those below it add.
+/// Adds |g^|^2 by its definition. A patch is point-symmetric, so its transform is real, and rows
+/// above the centre contribute as much as the rows below it.
 void add_power(const Patch& patch, const std::vector<Wave>& along_x,
                const std::vector<Wave>& along_y, Plane<double>& spectrum) {
-  const std::vector<double> none(static_cast<std::size_t>(spectrum.width()));
+  const std::vector<double> zeros(static_cast<std::size_t>(spectrum.width()));
   std::array<std::vector<double>, kPatchRadius + 1> real, imaginary;  // rows' transforms
   for (std::size_t y = 0; y <= kPatchRadius; ++y) {
-    real[y] = imaginary[y] = none;
+    real[y] = imaginary[y] = zeros;
     const double* const centre = patch.data() + (y + kPatchRadius) * kPatchSide + kPatchRadius;
     add(centre[0], along_x[0].cosine, real[y]);
     for (std::size_t x = 1; x <= kPatchRadius; ++x) {
@@ -122,10 +122,10 @@ template <typename Real>
 Plane<Real> extended_to_torus(const GreyImage& image) {
   Plane<Real> torus(torus_length(image.height()), torus_length(image.width()));
   for (int y = 0; y < torus.height(); ++y) {
-    const auto from = image.row(symmetric_index(y - kTorusMargin, image.height()));
-    const auto to = torus.row(y);
+    const auto source = image.row(symmetric_index(y - kTorusMargin, image.height()));
+    const auto target = torus.row(y);
     for (int x = 0; x < torus.width(); ++x) {
-      to[x] = static_cast<Real>(from[symmetric_index(x - kTorusMargin, image.width())]);
+      target[x] = static_cast<Real>(source[symmetric_index(x - kTorusMargin, image.width())]);
     }
   }
   return torus;
@@ -133,14 +133,14 @@ Plane<Real> extended_to_torus(const GreyImage& image) {
 
 Plane<double> gabor_spectrum(std::span<const GaborComponent> components, int height, int width) {
   Plane<double> spectrum(height, width / 2 + 1);
-  const std::vector<Wave> along_x = waves(spectrum.width(), width);
-  const std::vector<Wave> along_y = waves(height, height);
+  const std::vector<Wave> along_x = make_waves(spectrum.width(), width);
+  const std::vector<Wave> along_y = make_waves(height, height);
   for (const GaborComponent& component : components) {
     add_power(zero_mean_gabor_patch(component), along_x, along_y, spectrum);
   }
-  spectrum.at(0, 0) = 0.0;  // the patches have no mean; anything here is rounding
-  const double largest = *std::max_element(spectrum.samples().begin(), spectrum.samples().end());
-  for (double& power : spectrum.samples()) power /= largest;
+  spectrum.at(0, 0) = 0.0;  // removes rounding: the patches have no mean
+  const double max_power = *std::max_element(spectrum.samples().begin(), spectrum.samples().end());
+  for (double& power : spectrum.samples()) power /= max_power;
   return spectrum;
 }
 
@@ -156,16 +156,16 @@ TvGaborProblem<Real> tv_gabor_problem(const GreyImage& image, const TvGaborOptio
 template <typename Real>
 double mean_gradient(const Plane<Real>& torus) {
   const auto width = static_cast<std::size_t>(torus.width());
-  const std::vector<Real> none(width);  // as texture and dual point
+  const std::vector<Real> zeros(width);  // texture and dual point
   double sum = 0.0;
   for (int y = 0; y < torus.height(); ++y) {
-    const int below = y + 1 == torus.height() ? 0 : y + 1;
+    const int y_below = y + 1 == torus.height() ? 0 : y + 1;
     const GapRow<Real> row{.image = torus.row(y).data(),
-                           .image_below = torus.row(below).data(),
-                           .texture = none.data(),
-                           .texture_below = none.data(),
-                           .q_x = none.data(),
-                           .q_y = none.data()};
+                           .image_below = torus.row(y_below).data(),
+                           .texture = zeros.data(),
+                           .texture_below = zeros.data(),
+                           .q_x = zeros.data(),
+                           .q_y = zeros.data()};
     sum += row_kernels<Real>().gap(row, width).primal;
   }
   return sum / static_cast<double>(torus.size());

@@ -1,4 +1,4 @@
-/// \file The TV-Gabor solvers' kernels for one row, on the best instruction set of the machine.
+/// \file The row kernels of the TV-Gabor solvers, vectorised for every target.
 /// Real is float or double. Pointers of one call must not overlap unless stated otherwise.
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace touchtrial::engine {
 
-/// One row of the ADMM map; see TvGaborAdmm. Each pointer leads to `width` samples; `image_below`
+/// One row of the ADMM map; see TvGaborAdmm. Each pointer refers to `width` samples; `image_below`
 /// and `texture_below` are the next row on the torus.
 template <typename Real>
 struct AdmmRow {
@@ -16,29 +16,29 @@ struct AdmmRow {
   const Real* texture_below;
   Real* z_x;  ///< in and out
   Real* z_y;
-  Real* former_x;  ///< the map's previous value, in if there is momentum, out if it is kept
-  Real* former_y;
-  Real* target_x;  ///< out: grad f - z + 2 b, or b alone, with b = clip(z)
+  Real* previous_x;  ///< previous value of the map: input with momentum, output if store_previous
+  Real* previous_y;
+  Real* target_x;  ///< out: grad f - z + 2 b, or only b, with b = clip(z)
   Real* target_y;
 };
 
 template <typename Real>
 struct AdmmNumbers {
   Real relaxation;
-  Real limit;        ///< of |b|, 1 / penalty
-  Real momentum;     ///< share of the last change to add again
-  bool keep_former;  ///< for the next step's momentum
-  bool b_alone;      ///< as target
+  Real limit;           ///< of |b|, 1 / penalty
+  Real momentum;        ///< share of the last change to add
+  bool store_previous;  ///< store the value for the next step's momentum
+  bool b_only;          ///< write only b as target
 };
 
 template <typename Real>
 struct RestartNumbers {
-  Real former_limit;  ///< of |b| until now
-  Real limit;         ///< from now on
+  Real previous_limit;  ///< previous limit of |b|
+  Real limit;           ///< new limit of |b|
 };
 
-/// One row of a certificate; see certify. `image_below` and `texture_below` are the next row on the
-/// torus.
+/// One row of a certificate; see certified_gap(). `image_below` and `texture_below` are the next
+/// row on the torus.
 template <typename Real>
 struct GapRow {
   const Real* image;
@@ -64,12 +64,13 @@ struct GapSums {
 template <typename Real>
 struct RowKernels {
   void (*admm)(const AdmmRow<Real>& row, std::size_t width, const AdmmNumbers<Real>& numbers);
-  /// Rescales b, and with it z, from one limit to another, keeping w, and writes the targets of a
-  /// row; texture and former are not read.
+  /// Rescales b from one limit to another and updates z, keeping w; writes the targets of a row.
+  /// Ignores the texture and the previous value of the map.
   void (*restart)(const AdmmRow<Real>& row, std::size_t width, const RestartNumbers<Real>& numbers);
   /// out = -div of a row of a field on the torus: the adjoint of the gradient.
-  /// \param above  y of the row above
-  void (*divergence)(const Real* x, const Real* y, const Real* above, std::size_t width, Real* out);
+  /// \param y_above  y of the row above
+  void (*divergence)(const Real* x, const Real* y, const Real* y_above, std::size_t width,
+                     Real* out);
   /// out = the point with norm <= 1 nearest to scale * (x, y). The outputs may be the inputs.
   void (*clip)(const Real* x, const Real* y, std::size_t width, Real scale, Real* out_x,
                Real* out_y);

@@ -9,9 +9,9 @@
 
 namespace touchtrial::engine {
 
-/// With q = -p and u = f - v, the primal value is the sum of |grad u| + <q, grad v> / 2, and primal
-/// minus dual is the sum of |grad u| - <q, grad u>: no term is negative, so nothing cancels between
-/// pixels and the gap keeps its digits.
+/// With q = -p and u = f - v, the primal value is the sum of |grad u| + <q, grad v> / 2, and the
+/// gap is the sum of |grad u| - <q, grad u>. No term is negative, so there is no cancellation
+/// between pixels.
 template <typename Real>
 double certified_gap(const TvGaborProblem<Real>& problem, const VectorField<Real>& field,
                      double scale, TorusPlane<Real>& plane, double gain) {
@@ -22,21 +22,21 @@ double certified_gap(const TvGaborProblem<Real>& problem, const VectorField<Real
   const GapSums sums = plane.template sum_of_blocks<GapSums>([&](const RowBlock& block) {
     typename TorusPlane<Real>::Rows v(plane, block, unit);
     std::vector<Real> q_x(width), q_y(width);
-    GapSums of_block;
+    GapSums block_sums;
     for (int y = block.begin; y < block.end; ++y) {
       v.go_to(y);
       row_kernels<Real>().clip(field.x.row(y).data(), field.y.row(y).data(), width,
                                static_cast<Real>(scale), q_x.data(), q_y.data());
-      of_block +=
+      block_sums +=
           row_kernels<Real>().gap({.image = problem.image.row(y).data(),
                                    .image_below = problem.image.row((y + 1) % height).data(),
                                    .texture = v.row(),
-                                   .texture_below = v.below(),
+                                   .texture_below = v.row_below(),
                                    .q_x = q_x.data(),
                                    .q_y = q_y.data()},
                                   width);
     }
-    return of_block;
+    return block_sums;
   });
   return sums.primal > 0.0 ? sums.difference / sums.primal : 0.0;
 }
@@ -48,42 +48,42 @@ template double certified_gap(const TvGaborProblem<double>&, const VectorField<d
 
 namespace {
 
-/// First penalty, in units of the inverse mean gradient.
-constexpr double kFirst = 6.0;
-constexpr double kFall = 0.86;
-constexpr int kChecksOfFall = 20;
+/// Initial penalty, in units of the inverse mean gradient.
+constexpr double kInitialPenalty = 6.0;
+constexpr double kPenaltyDecay = 0.86;
+constexpr int kDecayChecks = 20;
 
-/// Primal residuals count six times: equal residuals leave the penalty too small for the gap.
+/// Weight of primal residuals: with equal weights the penalty would be too small for the gap.
 constexpr double kPrimalEmphasis = 6.0;
-/// Ratios of residuals up to this count as balanced.
+/// Residual ratios up to this are balanced.
 constexpr double kDeadBand = 1.2;
-/// One correction changes the penalty at most by this factor.
+/// The maximum change of the penalty in one correction, as a factor.
 constexpr double kMaxChange = 4.0;
-/// The penalty stays within this factor of the first, either way.
+/// The maximum deviation of the penalty from its initial value, as a factor.
 constexpr double kRange = 1e4;
 
-/// Momentum pauses after a check that finds more than this share of the last gap left.
+/// Momentum pauses after a check at which the gap exceeds this share of the previous gap.
 constexpr double kSlowProgress = 0.95;
 
-/// A solver stalls unless the gap falls to this share of itself within this many checks.
-constexpr double kShareLeft = 0.7;
-constexpr std::size_t kChecksToFall = 5;
+/// A solver stalls unless the gap falls to this share within kStallChecks.
+constexpr double kStallShare = 0.7;
+constexpr std::size_t kStallChecks = 5;
 
 }  // namespace
 
 PenaltySchedule::PenaltySchedule(double mean_gradient)
-    : first_penalty_(kFirst / mean_gradient), penalty_(first_penalty_) {}
+    : initial_penalty_(kInitialPenalty / mean_gradient), penalty_(initial_penalty_) {}
 
-bool PenaltySchedule::wants_residuals() const noexcept {
-  return checks_ >= kChecksOfFall;
+bool PenaltySchedule::needs_residuals() const noexcept {
+  return checks_ >= kDecayChecks;
 }
 
 void PenaltySchedule::next(double gap, const AdmmResiduals& residuals) {
   ++checks_;
-  pace_ = checks_ > 1 && gap > kSlowProgress * last_gap_ ? AdmmPace::cautious : AdmmPace::eager;
-  last_gap_ = gap;
-  if (checks_ <= kChecksOfFall) {
-    penalty_ *= kFall;
+  pace_ = checks_ > 1 && gap > kSlowProgress * previous_gap_ ? AdmmPace::cautious : AdmmPace::eager;
+  previous_gap_ = gap;
+  if (checks_ <= kDecayChecks) {
+    penalty_ *= kPenaltyDecay;
   } else {
     balance(residuals);
   }
@@ -93,14 +93,14 @@ void PenaltySchedule::balance(const AdmmResiduals& residuals) {
   const double ratio = kPrimalEmphasis * residuals.primal / residuals.dual;
   if (!(ratio > kDeadBand || ratio < 1.0 / kDeadBand)) return;  // balanced, or not a number
   const double factor = std::clamp(std::sqrt(ratio), 1.0 / kMaxChange, kMaxChange);
-  penalty_ = std::clamp(penalty_ * factor, first_penalty_ / kRange, first_penalty_ * kRange);
+  penalty_ = std::clamp(penalty_ * factor, initial_penalty_ / kRange, initial_penalty_ * kRange);
 }
 
 template <typename Real>
 TvGaborSolver<Real>::TvGaborSolver(const GreyImage& image, const TvGaborOptions& options, int jobs)
     : height_(image.height()),
       width_(image.width()),
-      wanted_gap_(options.gap),
+      target_gap_(options.gap),
       problem_(tv_gabor_problem<Real>(image, options)),
       plane_(problem_.image.height(), problem_.image.width(), jobs),
       schedule_(mean_gradient(problem_.image)),
@@ -110,27 +110,27 @@ template <typename Real>
 SolverStop TvGaborSolver<Real>::run(int max_steps, Patience patience) {
   while (steps_ < max_steps) {
     step_to_check(max_steps);
-    if (gap_ <= wanted_gap_) return SolverStop::converged;
-    // Without steps left the run is exhausted, not stalled.
+    if (gap_ <= target_gap_) return SolverStop::converged;
+    // At max_steps the run is exhausted, not stalled.
     const bool may_stall = patience == Patience::limited && steps_ < max_steps;
     if (may_stall && is_stalled()) return SolverStop::stalled;
   }
   return SolverStop::exhausted;
 }
 
-/// Certifies after every tenth step, because it costs as much as one; only then does the penalty
-/// change.
+/// Certifies and updates the penalty only after every tenth step, because a check costs as much as
+/// a step.
 template <typename Real>
-void TvGaborSolver<Real>::step_to_check(int last) {
-  const int left = PenaltySchedule::kStepsBetweenChecks;
-  const int check = std::min(last, steps_ + left - steps_ % left);
-  admm_.start_again(schedule_.penalty());
+void TvGaborSolver<Real>::step_to_check(int last_step) {
+  constexpr int kInterval = PenaltySchedule::kStepsBetweenChecks;
+  const int check = std::min(last_step, steps_ + kInterval - steps_ % kInterval);
+  admm_.restart(schedule_.penalty());
   for (; steps_ < check - 1; ++steps_) admm_.step(schedule_.pace());
   AdmmResiduals residuals;
-  if (schedule_.wants_residuals()) {
-    residuals = admm_.measured_last_step();
+  if (schedule_.needs_residuals()) {
+    residuals = admm_.measured_final_step();
   } else {
-    admm_.last_step();  // uninterrupted momentum can cycle
+    admm_.final_step();  // a step without momentum, because uninterrupted momentum can cycle
   }
   ++steps_;
   // The plane holds -div b, and -p = penalty b.
@@ -139,7 +139,7 @@ void TvGaborSolver<Real>::step_to_check(int last) {
   schedule_.next(gap_, residuals);
 }
 
-/// The plane still holds what the last check filtered.
+/// The plane contains the texture of the last check.
 template <typename Real>
 Plane<Real> TvGaborSolver<Real>::texture() const {
   return cropped_texture(plane_, admm_.penalty() / problem_.lambda, height_, width_);
@@ -147,8 +147,8 @@ Plane<Real> TvGaborSolver<Real>::texture() const {
 
 template <typename Real>
 bool TvGaborSolver<Real>::is_stalled() const {
-  return gaps_.size() > kChecksToFall &&
-         gaps_.back() > kShareLeft * gaps_[gaps_.size() - 1 - kChecksToFall];
+  return gaps_.size() > kStallChecks &&
+         gaps_.back() > kStallShare * gaps_[gaps_.size() - 1 - kStallChecks];
 }
 
 template class TvGaborSolver<float>;

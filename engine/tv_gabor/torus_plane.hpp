@@ -1,6 +1,5 @@
-/// \file A plane on TV-Gabor's torus that is filtered again and again, and passes over its rows on
-/// several threads. Source: docs/method.md, "TV-Gabor".
-/// Private to engine/tv_gabor.
+/// \file A plane on TV-Gabor's torus for repeated filtering, with multi-threaded passes over its
+/// rows. Source: docs/method.md, "TV-Gabor". Private to engine/tv_gabor.
 #pragma once
 
 #include "core/parallel.hpp"
@@ -15,14 +14,14 @@
 
 namespace touchtrial::engine {
 
-/// Rows that one thread works on; begin and end are even.
+/// Rows processed by one thread; begin and end are even.
 struct RowBlock {
   std::size_t index;
   int begin, end;
 };
 
-/// A plane that passes read and write by blocks of rows. The blocks depend on the height alone, so
-/// results do not depend on the number of threads. One thread at a time may use an object.
+/// A plane that is read and written in blocks of rows. Blocks depend only on the height, so results
+/// do not depend on the number of threads. Not thread-safe.
 template <typename Real>
 class TorusPlane {
  public:
@@ -31,9 +30,9 @@ class TorusPlane {
   TorusPlane(int height, int width, int jobs)
       : filter_(height, width),
         jobs_(jobs),
-        blocks_(static_cast<std::size_t>((height + kRowsOfBlock - 1) / kRowsOfBlock)),
+        blocks_(static_cast<std::size_t>((height + kRowsPerBlock - 1) / kRowsPerBlock)),
         first_rows_(blocks_ * 2 * this->width()),
-        last_y_(blocks_ * this->width()) {}
+        last_rows_y_(blocks_ * this->width()) {}
 
   [[nodiscard]] int height() const noexcept { return filter_.blocks().height; }
   [[nodiscard]] std::size_t width() const noexcept {
@@ -43,35 +42,35 @@ class TorusPlane {
 
   /// Calls work(block) for all blocks, on several threads.
   template <typename Work>
-  void in_blocks(const Work& work) const {
+  void for_each_block(const Work& work) const {
     in_parallel(jobs_, blocks_, [&](std::size_t index) {
       work(RowBlock{index, begin_of(index), begin_of(index + 1)});
     });
   }
-  /// Adds work(block) of all blocks, in their order.
+  /// Sums work(block) over all blocks, in order.
   template <typename Sum, typename Work>
   [[nodiscard]] Sum sum_of_blocks(const Work& work) const {
     std::vector<Sum> sums(blocks_);
-    in_blocks([&](const RowBlock& block) { sums[block.index] = work(block); });
+    for_each_block([&](const RowBlock& block) { sums[block.index] = work(block); });
     Sum sum{};
     for (const Sum& part : sums) sum += part;
     return sum;
   }
-  /// Calls work(block) for all blocks of coefficients' factors, on several threads.
+  /// Calls work(block) for all column blocks, on several threads.
   template <typename Work>
-  void in_column_blocks(const Work& work) const {
+  void for_each_column_block(const Work& work) const {
     in_parallel(jobs_, filter_.blocks().count(), work);
   }
   [[nodiscard]] const ColumnBlocks<Real>& column_blocks() const noexcept {
     return filter_.blocks();
   }
 
-  /// \param factors  as arranged_factors gives them
+  /// \param factors  in the layout of arranged_factors()
   void filter(std::span<const Real> factors) {
-    in_column_blocks([&](std::size_t block) { filter_.filter_columns(block, factors); });
+    for_each_column_block([&](std::size_t block) { filter_.filter_columns(block, factors); });
   }
 
-  /// The plane's rows in a block, one after the other, with the one below it.
+  /// Reads the rows of a block in order, each with the row below it.
   class Rows {
    public:
     /// \param scale  of all samples
@@ -83,16 +82,16 @@ class TorusPlane {
       load(block.begin);
     }
 
-    /// \param y  of the row after the last one; at first, of the first
+    /// \param y  the block's first row, then each next row
     void go_to(int y) {
       if (y % 2 != 0) load(y + 1);
       y_ = y;
     }
-    [[nodiscard]] const Real* row() const noexcept { return place_of(y_); }
-    [[nodiscard]] const Real* below() const noexcept { return place_of(y_ + 1); }
+    [[nodiscard]] const Real* row() const noexcept { return row_start(y_); }
+    [[nodiscard]] const Real* row_below() const noexcept { return row_start(y_ + 1); }
 
    private:
-    [[nodiscard]] const Real* place_of(int y) const noexcept {
+    [[nodiscard]] const Real* row_start(int y) const noexcept {
       return rows_.data() + static_cast<std::size_t>(y % 4) * plane_.width();
     }
     void load(int y) {
@@ -108,9 +107,8 @@ class TorusPlane {
     int y_ = 0;
   };
 
-  /// Writes -div of a field as the rows of a block, while Rows may still read the rows of this
-  /// block from the next one on, and the first rows of others. Call finish_divergence() after all
-  /// blocks.
+  /// Writes -div of a field to the rows of a block. Meanwhile Rows may read later rows of this
+  /// block and the first rows of other blocks. Call finish_divergence() after all blocks.
   class DivergenceRows {
    public:
     DivergenceRows(TorusPlane& plane, const RowBlock& block)
@@ -121,67 +119,68 @@ class TorusPlane {
           workspace_(plane.filter_.blocks().width),
           along_x_(rows_.data()),
           along_y_(along_x_ + plane.width()),
-          above_(along_y_ + plane.width()) {}
+          y_above_(along_y_ + plane.width()) {}
 
-    /// For the field's components in the present row, first the block's first one.
+    /// Buffers for the field's components in the current row, initially the block's first row.
     [[nodiscard]] Real* along_x() noexcept { return along_x_; }
     [[nodiscard]] Real* along_y() noexcept { return along_y_; }
 
-    /// Writes the row, and advances to the next.
+    /// Writes the current row and advances to the next.
     void next() {
       const std::size_t width = plane_.width();
       const int pair = y_ - y_ % 2;
       Real* const upper =
-          pair == block_.begin ? plane_.first_rows_of(block_.index) : rows_.data() + 3 * width;
-      row_kernels<Real>().divergence(along_x_, along_y_, above_, width,
+          pair == block_.begin ? plane_.first_rows(block_.index) : rows_.data() + 3 * width;
+      row_kernels<Real>().divergence(along_x_, along_y_, y_above_, width,
                                      y_ == pair ? upper : upper + width);
-      std::swap(above_, along_y_);
+      std::swap(y_above_, along_y_);
       if (y_ != pair && pair != block_.begin) {
         plane_.filter_.write_rows(pair, upper, upper + width, workspace_);
       }
-      if (++y_ == block_.end) std::copy_n(above_, width, plane_.last_y_of(block_.index));
+      if (++y_ == block_.end) std::copy_n(y_above_, width, plane_.last_y(block_.index));
     }
 
    private:
     TorusPlane& plane_;
     RowBlock block_;
     int y_;
-    std::vector<Real> rows_;  // along x, along y, along y above, and two that are not written yet
+    std::vector<Real> rows_;  // x, y, y of the row above, and two pending rows
     typename PlaneFilter<Real>::Workspace workspace_;
-    Real *along_x_, *along_y_, *above_;
+    Real *along_x_, *along_y_, *y_above_;
   };
 
-  /// The blocks' first rows, whose upper neighbours other blocks had.
+  /// Writes the first rows of the blocks, whose upper neighbours are in other blocks.
   void finish_divergence() {
-    in_blocks([&](const RowBlock& block) {
+    for_each_block([&](const RowBlock& block) {
       typename PlaneFilter<Real>::Workspace workspace(filter_.blocks().width);
-      Real* const upper = first_rows_of(block.index);
-      const Real* const above = last_y_of((block.index + blocks_ - 1) % blocks_);
-      for (std::size_t x = 0; x < width(); ++x) upper[x] += above[x];
+      Real* const upper = first_rows(block.index);
+      const Real* const y_above = last_y((block.index + blocks_ - 1) % blocks_);
+      for (std::size_t x = 0; x < width(); ++x) upper[x] += y_above[x];
       filter_.write_rows(block.begin, upper, upper + width(), workspace);
     });
   }
 
  private:
-  /// Enough that few rows at the seams are read twice, and few enough for all cores of a picture.
-  static constexpr int kRowsOfBlock = 64;
+  /// Blocks are large enough that few rows are read twice at their borders, and small enough to use
+  /// all cores.
+  static constexpr int kRowsPerBlock = 64;
 
   [[nodiscard]] int begin_of(std::size_t index) const noexcept {
     const auto pairs = static_cast<std::size_t>(height() / 2);
     return 2 * static_cast<int>(index * pairs / blocks_);
   }
-  [[nodiscard]] Real* first_rows_of(std::size_t block) noexcept {
+  [[nodiscard]] Real* first_rows(std::size_t block) noexcept {
     return first_rows_.data() + block * 2 * width();
   }
-  [[nodiscard]] Real* last_y_of(std::size_t block) noexcept {
-    return last_y_.data() + block * width();
+  [[nodiscard]] Real* last_y(std::size_t block) noexcept {
+    return last_rows_y_.data() + block * width();
   }
 
   PlaneFilter<Real> filter_;
   int jobs_;
   std::size_t blocks_;
-  std::vector<Real> first_rows_;  // two of each block, that wait for finish_divergence
-  std::vector<Real> last_y_;      // of each block: the field's last row along y
+  std::vector<Real> first_rows_;   // two per block, pending until finish_divergence()
+  std::vector<Real> last_rows_y_;  // y component of the last row of each block
 };
 
 }  // namespace touchtrial::engine

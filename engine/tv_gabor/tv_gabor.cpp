@@ -19,13 +19,13 @@
 namespace touchtrial::engine {
 namespace {
 
-/// Frequencies of components, cycles per pixel: lower ones are shading, higher ones mostly the
-/// pixel grid.
+/// Frequency range of components, cycles per pixel. Lower frequencies are shading, higher ones
+/// mostly the pixel grid.
 constexpr double kLowestPeakFrequency = 0.04;
 constexpr double kHighestPeakFrequency = 0.45;
 
-/// From this size on, an image is worked on by all cores.
-constexpr std::size_t kPixelsWorthThreads = std::size_t{1} << 20U;
+/// The size from which all cores are used.
+constexpr std::size_t kMinPixelsParallel = std::size_t{1} << 20U;
 
 /// sin^2(pi (n + 0.5) / N).
 std::vector<double> hann_window(int length) {
@@ -37,7 +37,7 @@ std::vector<double> hann_window(int length) {
   return window;
 }
 
-void load_windowed(const GreyImage& image, std::span<double> plane) {
+void fill_windowed(const GreyImage& image, std::span<double> plane) {
   const double mean = std::accumulate(image.samples().begin(), image.samples().end(), 0.0) /
                       static_cast<double>(image.size());
   const std::vector<double> along_y = hann_window(image.height());
@@ -56,24 +56,24 @@ GaborComponent component_at(double frequency_x, double frequency_y) {
   return {std::hypot(frequency_x, frequency_y), degrees < 0.0 ? degrees + 180.0 : degrees};
 }
 
-bool in_range(const GaborComponent& component) {
+bool has_peak_frequency(const GaborComponent& component) {
   return component.frequency_cycles_per_px >= kLowestPeakFrequency &&
          component.frequency_cycles_per_px <= kHighestPeakFrequency;
 }
 
-/// The result without the cartoon and the components.
+/// The result without cartoon and components.
 template <typename Real, typename Precision>
 TvGaborResult<Real> result_of(const TvGaborSolver<Precision>& solver, SolverStop stop) {
   return {converted<Real>(solver.texture()), {}, {}, solver.gap(), solver.steps(),
           stop == SolverStop::converged};
 }
 
-/// Float is used as far as its precision allows, and double continues if necessary: the texture's
-/// rounding reaches the multiplier at every step, and shows in the gap of images with large smooth
-/// parts, whose gradients are small.
+/// Solves in float as far as its precision allows, then continues in double. The texture's rounding
+/// enters the multiplier at every step, and limits the gap for images with large smooth parts,
+/// where gradients are small.
 template <typename Real>
-TvGaborResult<Real> solved(const GreyImage& image, const TvGaborOptions& options) {
-  const int jobs = image.size() >= kPixelsWorthThreads ? 0 : 1;
+TvGaborResult<Real> solve(const GreyImage& image, const TvGaborOptions& options) {
+  const int jobs = image.size() >= kMinPixelsParallel ? 0 : 1;
   if constexpr (std::is_same_v<Real, double>) {
     TvGaborSolver<double> solver(image, options, jobs);
     return result_of<double>(solver, solver.run(options.max_steps, Patience::unlimited));
@@ -82,9 +82,10 @@ TvGaborResult<Real> solved(const GreyImage& image, const TvGaborOptions& options
     const SolverStop stop = solver->run(options.max_steps, Patience::limited);
     if (stop != SolverStop::stalled) return result_of<float>(*solver, stop);
     const TvGaborState<float> state = solver->state();
-    solver.reset();  // frees its memory before double's larger planes need some
-    TvGaborSolver<double> finisher(image, options, jobs, state);
-    return result_of<float>(finisher, finisher.run(options.max_steps, Patience::unlimited));
+    solver.reset();  // frees memory for the larger planes in double
+    TvGaborSolver<double> double_solver(image, options, jobs, state);
+    return result_of<float>(double_solver,
+                            double_solver.run(options.max_steps, Patience::unlimited));
   }
 }
 
@@ -95,7 +96,7 @@ GaborComponent strongest_component(const GreyImage& image) {
   const int height = image.height();
   const int width = image.width();
   RealFft<double> fft(height, width);
-  load_windowed(image, fft.plane());
+  fill_windowed(image, fft.plane());
   fft.forward();
   std::optional<GaborComponent> strongest;
   double max_power = -1.0;
@@ -105,7 +106,7 @@ GaborComponent strongest_component(const GreyImage& image) {
     for (int x = 0; x <= width / 2; ++x, ++i) {
       const GaborComponent component = component_at(static_cast<double>(x) / width, frequency_y);
       const double power = std::norm(fft.spectrum()[i]);
-      if (!in_range(component) || power <= max_power) continue;
+      if (!has_peak_frequency(component) || power <= max_power) continue;
       max_power = power;
       strongest = component;
     }
@@ -126,7 +127,7 @@ TvGaborResult<Real> tv_gabor(const GreyImage& image, const TvGaborOptions& optio
   } else {
     TvGaborOptions explicit_options = options;
     if (options.automatic) explicit_options.components = {strongest_component(image)};
-    result = solved<Real>(image, explicit_options);
+    result = solve<Real>(image, explicit_options);
     result.components = std::move(explicit_options.components);
   }
   result.cartoon = converted<Real>(image);

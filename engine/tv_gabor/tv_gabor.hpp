@@ -19,20 +19,19 @@ struct TvGaborResult {
   bool converged = true;
 };
 
-/// The oscillation that makes up most of an image: the component "auto". It is the largest sample,
-/// between 0.04 and 0.45 cycles per pixel, of the power spectrum of the image minus its mean under
-/// a Hann window, on the image's own frequency grid; of equal samples, the first in row order.
-/// Thread-safe. Costs one Fourier transform in double.
+/// The strongest oscillation of an image: the component "auto". It is the largest sample of the
+/// image's power spectrum (mean removed, Hann window) between 0.04 and 0.45 cycles per pixel; the
+/// first in row order if several are equal. Thread-safe. Costs one Fourier transform in double.
 /// \return direction in [0, 180) degrees
-/// \throws std::invalid_argument if the image is empty, or has both sides below 3 pixels: then its
-///   grid has no frequency in that range
+/// \throws std::invalid_argument if the image is empty, or both sides are below 3 pixels, so that
+///   no frequency is in that range
 [[nodiscard]] GaborComponent strongest_component(const GreyImage& image);
 
-/// Decomposes an image. Thread-safe; from 2^20 pixels on, it uses all cores, and digits do not
-/// depend on their number. A step costs two Fourier transforms of the torus (540 x 540 samples for
-/// 500 x 500 pixels).
+/// Decomposes an image. Thread-safe. From 2^20 pixels it uses all cores; results do not depend on
+/// their number. A step costs two Fourier transforms of the torus (540 x 540 samples for 500 x 500
+/// pixels).
 /// \param image  8-bit grey, at least 1 x 1
-/// \param options  in the ranges that extraction.hpp states; not checked here
+/// \param options  in the ranges of TvGaborOptions; not checked
 /// \throws std::invalid_argument if the image is empty, or too small to choose a component
 template <typename Real>
 [[nodiscard]] TvGaborResult<Real> tv_gabor(const GreyImage& image, const TvGaborOptions& options);

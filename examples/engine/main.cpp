@@ -20,7 +20,7 @@ void stroke(const char* picture, const char* texture_file) {
   const engine::RenderingOptions rendering;
   const engine::TextureField field = engine::make_texture_field(extraction.texture, rendering);
   const std::array fields = {field.view()};
-  const engine::Gains gains = engine::choose_gains(fields, rendering).of_field.front();
+  const engine::Gains gains = engine::choose_gains(fields, rendering).per_field.front();
   const engine::RenderingModel model(field.view(), rendering, gains);
 
   // Along the middle of the picture at 60 mm/s, 1 mm deep, a thousand times a second.

@@ -11,12 +11,12 @@ namespace {
 class ConstantStimuli final : public Procedure {
  public:
   explicit ConstantStimuli(std::vector<std::size_t> order) : order_(std::move(order)) {}
-  [[nodiscard]] std::size_t next() const override { return order_[at_]; }
-  void answer(bool /*correct*/) override { at_ = std::min(at_ + 1, order_.size() - 1); }
+  [[nodiscard]] std::size_t next() const override { return order_[position_]; }
+  void answer(bool /*correct*/) override { position_ = std::min(position_ + 1, order_.size() - 1); }
 
  private:
   std::vector<std::size_t> order_;
-  std::size_t at_ = 0;
+  std::size_t position_ = 0;
 };
 
 }  // namespace
@@ -36,7 +36,7 @@ std::unique_ptr<Procedure> make_constant_stimuli(const TrackSettings& settings,
     shuffle(std::span(round), stream);
     for (const std::size_t level : round) order.insert(order.end(), trials / levels, level);
   } else {
-    // Every level comes once before any repeats, so that the order is balanced over the track.
+    // Every level occurs once before any is repeated, so that the order is balanced over the track.
     while (order.size() < trials) {
       shuffle(std::span(round), stream);
       order.insert(order.end(), round.begin(), round.end());

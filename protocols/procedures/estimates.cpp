@@ -16,13 +16,13 @@ Censored side_of(std::size_t level, std::size_t levels) {
 
 std::vector<std::size_t> reversals_of(std::span<const TrackTrial> trials) {
   std::vector<std::size_t> reversals;
-  int last = 0;
+  int last_direction = 0;
   for (std::size_t i = 1; i < trials.size(); ++i) {
-    const std::size_t before = trials[i - 1].level;
-    const int turn = trials[i].level > before ? 1 : trials[i].level < before ? -1 : 0;
-    if (turn == 0) continue;
-    if (last != 0 && turn != last) reversals.push_back(before);
-    last = turn;
+    const std::size_t previous = trials[i - 1].level;
+    const int direction = trials[i].level > previous ? 1 : trials[i].level < previous ? -1 : 0;
+    if (direction == 0) continue;
+    if (last_direction != 0 && direction != last_direction) reversals.push_back(previous);
+    last_direction = direction;
   }
   return reversals;
 }
@@ -33,10 +33,10 @@ Threshold reversal_threshold(std::span<const double> levels, std::span<const Tra
     throw std::invalid_argument("reversal_threshold: needs trials and levels");
   }
   std::vector<std::size_t> reversals = reversals_of(trials);
-  Threshold found;
+  Threshold threshold;
   if (reversals.empty()) {
-    found.censored = side_of(trials.back().level, levels.size());
-    return found;
+    threshold.censored = side_of(trials.back().level, levels.size());
+    return threshold;
   }
   reversals.erase(reversals.begin(), reversals.begin() + static_cast<std::ptrdiff_t>(
                                                              std::min(skipped, reversals.size())));
@@ -44,12 +44,12 @@ Threshold reversal_threshold(std::span<const double> levels, std::span<const Tra
   double sum = 0.0;
   for (const std::size_t level : reversals) {
     sum += levels[level];
-    if (found.censored == Censored::no) found.censored = side_of(level, levels.size());
+    if (threshold.censored == Censored::no) threshold.censored = side_of(level, levels.size());
   }
-  if (found.censored == Censored::no && !reversals.empty()) {
-    found.level = sum / static_cast<double>(reversals.size());
+  if (threshold.censored == Censored::no && !reversals.empty()) {
+    threshold.level = sum / static_cast<double>(reversals.size());
   }
-  return found;
+  return threshold;
 }
 
 }  // namespace touchtrial::procedures

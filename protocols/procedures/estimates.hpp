@@ -1,6 +1,6 @@
-/// \file Thresholds of finished tracks, with intervals, and goodness of fit. A threshold is censored
-/// if the answers do not show that it lies within the levels: it then has a side or bounds instead
-/// of a number. Formulas and sources: docs/thresholds.md, "Estimates".
+/// \file Thresholds of finished tracks, with intervals, and goodness of fit. A threshold is
+/// censored if the answers do not show that it is within the levels: it then has a side or bounds
+/// instead of a number. Formulas and sources: docs/thresholds.md, "Estimates".
 #pragma once
 
 #include "core/random.hpp"
@@ -13,11 +13,11 @@
 
 namespace touchtrial::procedures {
 
-/// What is known about a threshold without a number.
+/// Whether a threshold has a number, and if not, on which side of the levels it is.
 enum class Censored {
   no,            ///< it has a number
-  below,         ///< it lies below the levels
-  above,         ///< it lies above the levels
+  below,         ///< it is below the levels
+  above,         ///< it is above the levels
   undetermined,  ///< the answers determine neither a number nor a side
 };
 
@@ -29,40 +29,41 @@ struct Threshold {
   Censored censored = Censored::no;
 };
 
-/// The levels of a staircase's reversals, in order. A reversal is higher, or lower, than the levels
-/// before and after it.
+/// The levels of a staircase's reversals, in order. At a reversal, the level is higher than before
+/// and after, or lower.
 [[nodiscard]] std::vector<std::size_t> reversals_of(std::span<const TrackTrial> trials);
 
-/// Estimates the level of the proportion convergence_of() as the mean of the last reversals, an
-/// even number of them. The estimate has no interval. It is biased by the size of the last steps
-/// and, in short tracks, towards the first level (docs/procedures-recovery.md).
+/// Estimates the level with proportion convergence_of() as the mean of the last reversals, an even
+/// number of them. The estimate has no interval. It is biased by the size of the last steps and, in
+/// short tracks, towards the first level (docs/procedures-recovery.md).
 /// \param skipped  reversals at the start that are ignored, >= 0
-/// \return no level with fewer than two reversals; censored if a counted reversal, or without
-///   reversals the last trial, is at a bound
+/// \return no level with fewer than two reversals; censored if a counted reversal is at a bound, or
+///   the last trial if there are no reversals
 /// \throws std::invalid_argument if there are no trials or levels
 [[nodiscard]] Threshold reversal_threshold(std::span<const double> levels,
                                            std::span<const TrackTrial> trials,
                                            std::size_t skipped = 2);
 
-// The observers over whom estimate_threshold averages likelihoods. A width is that of the function,
-// in dB, from F = .05 to .95.
+// The observers over whom estimate_threshold averages likelihoods. The width of a function is from
+// F = .05 to .95.
 inline constexpr double kMinWidth_db = 2.0;
 inline constexpr double kMaxWidth_db = 60.0;
-inline constexpr double kMaxLapse = 0.5;    ///< of anybody
-inline constexpr double kWidthPower = 0.5;  ///< widths have the density width^this
-inline constexpr double kAnyLapse = 3.0;    ///< the lapse rate is Beta(1, this), up to kMaxLapse
+inline constexpr double kMaxLapse = 0.5;    ///< of all observers
+inline constexpr double kWidthPower = 0.5;  ///< the density of widths is width^kWidthPower
+inline constexpr double kLapseBeta =
+    3.0;  ///< the lapse rate is Beta(1, kLapseBeta), up to kMaxLapse
 // Typical observers.
-inline constexpr double kTypicalWidth_db = 10.0;  ///< median
-inline constexpr double kTypicalSpread = 0.8;     ///< SD of the natural logarithm of the width
-inline constexpr double kTypicalLapse = 10.0;  ///< the lapse rate is Beta(1, this), up to kMaxLapse
+inline constexpr double kTypicalWidth_db = 10.0;   ///< median width
+inline constexpr double kTypicalSpread = 0.8;      ///< SD of the natural logarithm of the width
+inline constexpr double kTypicalLapseBeta = 10.0;  ///< the lapse rate is Beta(1, kTypicalLapseBeta)
 
 /// The threshold of a track, and the observer who fits its answers.
 struct ThresholdEstimate {
   Threshold threshold;
-  /// The most likely threshold of typical observers within the interval (also if it is open), and
-  /// the means of their lapse rates and of the logarithm of their slopes.
+  /// The most likely threshold of typical observers within the interval (also if it is open), with
+  /// the means of their lapse rates and log slopes.
   Observer observer;
-  /// For a threshold without a number: its bounds if the lapse rate is typical, Beta(1, 10).
+  /// The bounds of a threshold without a number, for typical lapse rates.
   Threshold attentive{};
 };
 
@@ -71,14 +72,16 @@ struct ThresholdEstimate {
 ///
 /// The interval contains the thresholds that a likelihood-ratio test does not reject (chi-square,
 /// one degree of freedom), with likelihoods averaged over widths and lapse rates. The threshold has
-/// a number if two conditions hold: that of typical observers lies within the levels, and the same
-/// test rejects both that nothing is felt at any level and that everything is. An end farther from
-/// the levels than their range is then open.
+/// a number if two conditions hold: the threshold of typical observers is within the levels, and
+/// the same test rejects both that nothing is felt at any level and that everything is felt at
+/// every level. An end of the interval is then open if it is farther from the levels than their
+/// range.
 ///
-/// Otherwise an end outside the levels is open. The threshold is below the levels if the whole
-/// interval is. It is above them if the whole interval for typical lapse rates is, because an
-/// observer who always guesses might also lapse in half of the trials. The lowest (highest) level
-/// is then its only end.
+/// Otherwise, an end outside the levels is open. The threshold is below the levels if the entire
+/// interval is. It is above the levels if the entire interval for typical lapse rates is, because
+/// the answers of an observer who always guesses also fit an observer who lapses in half of the
+/// trials. The interval of a threshold below (above) the levels has only one end, the lowest
+/// (highest) level.
 /// \param counts    ascending; may be empty
 /// \param levels    of the track in dB, ascending, at least one
 /// \param guess     in (0, 1)
@@ -91,10 +94,10 @@ struct ThresholdEstimate {
 /// The parameters of a fit by maximum likelihood.
 struct FitOptions {
   Shape shape = Shape::weibull;
-  double guess = 0.5;             ///< set by the task
-  std::optional<double> slope{};  ///< nothing: fitted
-  std::optional<double> lapse{};  ///< nothing: fitted
-  double max_lapse = 0.1;         ///< a fitted lapse lies in [0, max_lapse]
+  double guess = 0.5;             ///< guess rate, set by the task
+  std::optional<double> slope{};  ///< empty: fitted
+  std::optional<double> lapse{};  ///< empty: fitted
+  double max_lapse = 0.1;         ///< a fitted lapse is in [0, max_lapse]
 };
 
 struct Fit {
@@ -103,15 +106,14 @@ struct Fit {
   double deviance = 0.0;
 };
 
-/// Finds the most likely observer. The threshold is searched up to one range of the levels beyond
-/// their ends, and the width of the function between a quarter of the minimum distance of levels
-/// and five times their range.
+/// Finds the most likely observer. The threshold is at most one range of the levels beyond their
+/// ends, and the width of the function is between a quarter of the minimum distance of levels and
+/// five times their range.
 /// \throws std::invalid_argument if there are fewer than two levels, or if counts or options are
 ///   impossible
 [[nodiscard]] Fit fit_observer(std::span<const LevelCounts> counts, const FitOptions& options);
 
-/// Goodness of fit by parametric bootstrap: data simulated from the fitted observer are fitted,
-/// too.
+/// Goodness of fit by parametric bootstrap, with data simulated from the fitted observer.
 struct GoodnessOfFit {
   double deviance = 0.0;
   double p = 1.0;                    ///< share of simulated deviances at least as large; never 0

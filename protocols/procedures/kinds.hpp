@@ -1,4 +1,4 @@
-/// \file Constructors of the procedures that are listed in procedure.cpp.
+/// \file Constructors of the procedures that procedure.cpp lists.
 #pragma once
 
 #include "protocols/procedures/procedure.hpp"

@@ -31,11 +31,11 @@ double dot(std::span<const double> a, std::span<const double> b) noexcept {
 }
 
 void require_ascending(std::span<const double> values, const char* what) {
-  const bool finite =
+  const bool is_finite =
       std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-  const bool ascends =
+  const bool is_ascending =
       std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
-  if (values.empty() || !finite || !ascends) {
+  if (values.empty() || !is_finite || !is_ascending) {
     throw std::invalid_argument(std::string(what) + " must be an ascending list of numbers");
   }
 }
@@ -44,29 +44,29 @@ void require_ascending(std::span<const double> values, const char* what) {
 std::vector<double> normalised_prior(std::vector<double> prior, std::size_t size) {
   if (prior.empty()) prior.assign(size, 1.0);
   const double sum = std::accumulate(prior.begin(), prior.end(), 0.0);
-  const bool possible =
+  const bool is_valid =
       std::all_of(prior.begin(), prior.end(), [](double w) { return w >= 0.0; }) && sum > 0.0 &&
       std::isfinite(sum);
-  if (prior.size() != size || !possible) {
+  if (prior.size() != size || !is_valid) {
     throw std::invalid_argument("a prior needs a weight of at least 0 for each value");
   }
   for (double& weight : prior) weight /= sum;
   return prior;
 }
 
-/// Threshold by slope by lapse.
+/// All combinations of the grid's values: the threshold varies slowest, the lapse rate fastest.
 std::vector<Observer> observers_of(const ParameterGrid& grid) {
-  std::vector<Observer> all;
-  all.reserve(grid.thresholds.size() * grid.slopes.size() * grid.lapses.size());
+  std::vector<Observer> observers;
+  observers.reserve(grid.thresholds.size() * grid.slopes.size() * grid.lapses.size());
   for (const double threshold : grid.thresholds) {
     for (const double slope : grid.slopes) {
       for (const double lapse : grid.lapses) {
-        all.push_back({grid.shape, threshold, slope, grid.guess, lapse});
-        require_possible(all.back());
+        observers.push_back({grid.shape, threshold, slope, grid.guess, lapse});
+        require_possible(observers.back());
       }
     }
   }
-  return all;
+  return observers;
 }
 
 std::vector<double> prior_weights(const ParameterGrid& grid) {
@@ -93,8 +93,8 @@ double sd_of(const Marginal& marginal) noexcept {
   const double mean = mean_of(marginal);
   double sum = 0.0;
   for (std::size_t i = 0; i < marginal.values.size(); ++i) {
-    const double off = marginal.values[i] - mean;
-    sum += marginal.weights[i] * off * off;
+    const double deviation = marginal.values[i] - mean;
+    sum += marginal.weights[i] * deviation * deviation;
   }
   return std::sqrt(sum);
 }
@@ -123,17 +123,17 @@ Posterior::Posterior(std::span<const double> levels, ParameterGrid grid)
   correct_.reserve(level_count_ * observers.size());
   answer_entropy_.reserve(level_count_ * observers.size());
   for (const double level : levels) {
-    AnswerShares felt;
+    AnswerShares f;
     for (std::size_t i = 0; i < observers.size(); ++i) {
       const Observer& observer = observers[i];
       // Neighbouring observers differ only in the lapse rate.
       if (i % grid_.lapses.size() == 0) {
-        felt = shares_at({observer.shape, observer.threshold, observer.slope, 0.0, 0.0}, level);
+        f = shares_at({observer.shape, observer.threshold, observer.slope, 0.0, 0.0}, level);
       }
       const double scale = 1.0 - observer.guess - observer.lapse;
-      const double correct = observer.guess + scale * felt.correct;
+      const double correct = observer.guess + scale * f.correct;
       correct_.push_back(correct);
-      answer_entropy_.push_back(-p_log_p(correct) - p_log_p(observer.lapse + scale * felt.wrong));
+      answer_entropy_.push_back(-p_log_p(correct) - p_log_p(observer.lapse + scale * f.wrong));
     }
   }
 }
@@ -152,26 +152,27 @@ void Posterior::observe(std::size_t level, bool correct) noexcept {
   for (std::size_t i = 0; i < weights_.size(); ++i) weights_[i] *= likelihood(i) / sum;
 }
 
-// The expected entropy of all parameters is their present entropy minus their mutual information
-// with the answer: the answer's entropy minus its expected entropy given the parameters.
+// The expected entropy of all parameters is their current entropy minus their mutual information
+// with the answer, which is the answer's entropy minus its expected entropy given the parameters.
 double Posterior::joint_entropy_at(std::size_t level, double entropy_now) const noexcept {
   const double correct = dot(weights_, row(correct_, level));
-  const double answer = -p_log_p(correct) - p_log_p(1.0 - correct);
-  return entropy_now - (answer - dot(weights_, row(answer_entropy_, level)));
+  const double answer_entropy = -p_log_p(correct) - p_log_p(1.0 - correct);
+  return entropy_now - (answer_entropy - dot(weights_, row(answer_entropy_, level)));
 }
 
 // With q_i the probability of "value i and this answer" and P their sum, the answer's part of the
 // expected entropy is P log P - sum of q_i log q_i.
-double Posterior::marginal_entropy_at(std::size_t level, std::size_t summed) const noexcept {
+double Posterior::marginal_entropy_at(std::size_t level,
+                                      std::size_t nuisance_points) const noexcept {
   const std::span<const double> right = row(correct_, level);
   double all_correct = 0.0;
   double all_wrong = 0.0;
   double sum = 0.0;
-  for (std::size_t at = 0; at < weights_.size(); at += summed) {
-    const std::span<const double> weights = std::span(weights_).subspan(at, summed);
+  for (std::size_t first = 0; first < weights_.size(); first += nuisance_points) {
+    const std::span<const double> weights = std::span(weights_).subspan(first, nuisance_points);
     double total = 0.0;
     for (const double weight : weights) total += weight;
-    const double correct = dot(weights, right.subspan(at, summed));
+    const double correct = dot(weights, right.subspan(first, nuisance_points));
     const double wrong = std::max(0.0, total - correct);
     all_correct += correct;
     all_wrong += wrong;
@@ -183,14 +184,16 @@ double Posterior::marginal_entropy_at(std::size_t level, std::size_t summed) con
 std::vector<double> Posterior::expected_entropies(Nuisance nuisance) const {
   std::vector<double> entropies(level_count_);
   if (nuisance == Nuisance::none) {
-    double now = 0.0;
-    for (const double weight : weights_) now -= p_log_p(weight);
-    for (std::size_t i = 0; i < level_count_; ++i) entropies[i] = joint_entropy_at(i, now);
+    double entropy_now = 0.0;
+    for (const double weight : weights_) entropy_now -= p_log_p(weight);
+    for (std::size_t i = 0; i < level_count_; ++i) entropies[i] = joint_entropy_at(i, entropy_now);
     return entropies;
   }
   const std::size_t lapses = grid_.lapses.size();
-  const std::size_t summed = nuisance == Nuisance::lapse ? lapses : grid_.slopes.size() * lapses;
-  for (std::size_t i = 0; i < level_count_; ++i) entropies[i] = marginal_entropy_at(i, summed);
+  const std::size_t nuisance_points =
+      nuisance == Nuisance::lapse ? lapses : grid_.slopes.size() * lapses;
+  for (std::size_t i = 0; i < level_count_; ++i)
+    entropies[i] = marginal_entropy_at(i, nuisance_points);
   return entropies;
 }
 
@@ -200,16 +203,16 @@ std::size_t Posterior::best_level(Nuisance nuisance) const {
 
 Marginal Posterior::threshold() const {
   Marginal marginal{grid_.thresholds, std::vector<double>(grid_.thresholds.size())};
-  const std::size_t each = weights_.size() / marginal.values.size();
-  for (std::size_t i = 0; i < weights_.size(); ++i) marginal.weights[i / each] += weights_[i];
+  const std::size_t stride = weights_.size() / marginal.values.size();
+  for (std::size_t i = 0; i < weights_.size(); ++i) marginal.weights[i / stride] += weights_[i];
   return marginal;
 }
 
 Marginal Posterior::slope() const {
   Marginal marginal{grid_.slopes, std::vector<double>(grid_.slopes.size())};
-  const std::size_t each = grid_.lapses.size();
+  const std::size_t stride = grid_.lapses.size();
   for (std::size_t i = 0; i < weights_.size(); ++i) {
-    marginal.weights[i / each % marginal.values.size()] += weights_[i];
+    marginal.weights[i / stride % marginal.values.size()] += weights_[i];
   }
   return marginal;
 }
@@ -223,12 +226,12 @@ Marginal Posterior::lapse() const {
 }
 
 Observer Posterior::mode() const {
-  const auto at = static_cast<std::size_t>(std::max_element(weights_.begin(), weights_.end()) -
-                                           weights_.begin());
+  const auto index = static_cast<std::size_t>(std::max_element(weights_.begin(), weights_.end()) -
+                                              weights_.begin());
   const std::size_t lapses = grid_.lapses.size();
   const std::size_t slopes = grid_.slopes.size();
-  return {grid_.shape, grid_.thresholds[at / lapses / slopes], grid_.slopes[at / lapses % slopes],
-          grid_.guess, grid_.lapses[at % lapses]};
+  return {grid_.shape, grid_.thresholds[index / lapses / slopes],
+          grid_.slopes[index / lapses % slopes], grid_.guess, grid_.lapses[index % lapses]};
 }
 
 }  // namespace touchtrial::procedures

@@ -16,7 +16,7 @@ struct ParameterGrid {
   Shape shape = Shape::weibull;
   std::vector<double> thresholds;         ///< ascending
   std::vector<double> slopes;             ///< ascending, > 0
-  double guess = 0.5;                     ///< set by the task
+  double guess = 0.5;                     ///< guess rate, set by the task
   std::vector<double> lapses;             ///< ascending
   std::vector<double> threshold_prior{};  ///< weights >= 0, one for each value; empty: flat
   std::vector<double> slope_prior{};
@@ -41,12 +41,12 @@ class Posterior {
  public:
   /// Tabulates the likelihood: 16 bytes for each level and grid point.
   /// \param levels  finite, at least one
-  /// \throws std::invalid_argument if a list is empty or not ascending, an observer is impossible, a
-  ///   prior has a wrong length or no weight, or the tables would exceed 20 million numbers
+  /// \throws std::invalid_argument if a list is empty or not ascending, an observer is impossible,
+  ///   a prior has a wrong length or no weight, or the tables would exceed 20 million numbers
   Posterior(std::span<const double> levels, ParameterGrid grid);
 
   /// Updates the posterior by Bayes' rule. An answer that is impossible for every observer with a
-  /// weight leaves the posterior unchanged.
+  /// positive weight leaves the posterior unchanged.
   /// \param level  index into the levels, less than their number
   void observe(std::size_t level, bool correct) noexcept;
 
@@ -57,7 +57,7 @@ class Posterior {
   /// The first level whose expected entropy is within 1e-9 of the minimum.
   [[nodiscard]] std::size_t best_level(Nuisance nuisance) const;
 
-  /// Weights by threshold, slope and lapse, of which the last varies fastest.
+  /// The weights of all grid points. The threshold varies slowest, the lapse rate fastest.
   [[nodiscard]] const std::vector<double>& weights() const noexcept { return weights_; }
   [[nodiscard]] const ParameterGrid& grid() const noexcept { return grid_; }
 
@@ -71,7 +71,8 @@ class Posterior {
   [[nodiscard]] std::span<const double> row(const std::vector<double>& table,
                                             std::size_t level) const noexcept;
   [[nodiscard]] double joint_entropy_at(std::size_t level, double entropy_now) const noexcept;
-  [[nodiscard]] double marginal_entropy_at(std::size_t level, std::size_t summed) const noexcept;
+  [[nodiscard]] double marginal_entropy_at(std::size_t level,
+                                           std::size_t nuisance_points) const noexcept;
 
   ParameterGrid grid_;
   std::size_t level_count_;

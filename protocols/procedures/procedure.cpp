@@ -29,16 +29,16 @@ std::span<const ProcedureKind> procedure_kinds() {
 
 std::unique_ptr<Procedure> make_procedure(const TrackSettings& settings, RandomStream& stream) {
   const std::vector<double>& levels = settings.levels;
-  const bool finite =
+  const bool is_finite =
       std::all_of(levels.begin(), levels.end(), [](double v) { return std::isfinite(v); });
-  const bool ascends =
+  const bool is_ascending =
       std::adjacent_find(levels.begin(), levels.end(), std::greater_equal<>()) == levels.end();
-  if (levels.empty() || !finite || !ascends) {
+  if (levels.empty() || !is_finite || !is_ascending) {
     throw std::invalid_argument("a track's levels must be an ascending list of numbers");
   }
   if (settings.trials < 1) throw std::invalid_argument("a track needs at least one trial");
-  const auto kind = std::find_if(kKinds.begin(), kKinds.end(), [&](const ProcedureKind& one) {
-    return one.name == settings.procedure;
+  const auto kind = std::find_if(kKinds.begin(), kKinds.end(), [&](const ProcedureKind& listed) {
+    return listed.name == settings.procedure;
   });
   if (kind == kKinds.end()) {
     throw std::invalid_argument("the procedure \"" + settings.procedure + "\" does not exist");

@@ -18,11 +18,12 @@ namespace touchtrial::procedures {
 
 /// A staircase. Step sizes are numbers of places in the list of levels.
 struct UpDown {
-  int correct_for_down = 2;              ///< right answers in a row, >= 1; weighted: 1
-  int wrong_for_up = 1;                  ///< wrong answers in a row, >= 1; weighted: 1
-  std::vector<int> steps_down{4, 2, 1};  ///< each >= 1; the next after each reversal, then the last
-  int up_for_one_down = 1;               ///< size of a step up in steps down, >= 1; weighted: 3
-  std::size_t first_level = 0;           ///< index of the first trial's level
+  int correct_for_down = 2;  ///< right answers in a row, >= 1; weighted: 1
+  int wrong_for_up = 1;      ///< wrong answers in a row, >= 1; weighted: 1
+  /// Step sizes, each >= 1. Each reversal moves to the next size, until the last one.
+  std::vector<int> steps_down{4, 2, 1};
+  int up_for_one_down = 1;      ///< a step up in units of a step down, >= 1; weighted: 3
+  std::size_t first_level = 0;  ///< index of the first trial's level
 };
 
 /// The proportion correct p to which a staircase converges. With n right answers for a step down,
@@ -34,10 +35,10 @@ struct UpDown {
 /// The settings of one track. Levels are ascending; a higher level is easier.
 struct TrackSettings {
   std::string procedure = "quest-plus";
-  std::vector<double> levels;  ///< all levels that may be presented; the ends are the bounds
+  std::vector<double> levels;  ///< all possible levels; the ends are the bounds
   int trials = 60;             ///< >= 1; for constant stimuli a multiple of the number of levels
   UpDown up_down{};            ///< for the staircases
-  bool blocked = false;        ///< constant stimuli: all trials of a level together
+  bool blocked = false;        ///< constant stimuli: whether all trials of a level come together
   ParameterGrid grid{};        ///< for QUEST+, psi and psi-marginal
 };
 

@@ -40,7 +40,7 @@ double log_weibull_share(double y) noexcept {
 }
 
 /// F and 1 - F.
-AnswerShares without_guessing(Shape shape, double z) noexcept {
+AnswerShares f_shares(Shape shape, double z) noexcept {
   switch (shape) {
     case Shape::logistic:
       return {1.0 / (1.0 + std::exp(-z)), 1.0 / (1.0 + std::exp(z))};
@@ -54,7 +54,7 @@ AnswerShares without_guessing(Shape shape, double z) noexcept {
   return {normal_share(z), normal_share(-z)};
 }
 
-AnswerShares log_without_guessing(Shape shape, double z) noexcept {
+AnswerShares log_f_shares(Shape shape, double z) noexcept {
   switch (shape) {
     case Shape::logistic:
       return {log_logistic_share(z), log_logistic_share(-z)};
@@ -66,7 +66,7 @@ AnswerShares log_without_guessing(Shape shape, double z) noexcept {
   return {log_normal_share(z), log_normal_share(-z)};
 }
 
-/// z where F(z) = share.
+/// The z with F(z) = share.
 double inverse_of(Shape shape, double share) {
   switch (shape) {
     case Shape::logistic:
@@ -83,13 +83,14 @@ double times_log(std::int64_t count, double log_share) noexcept {
   return count == 0 ? 0.0 : static_cast<double>(count) * log_share;
 }
 
-/// The log-likelihood with each level's own proportion.
+/// The log-likelihood of the observed proportion at each level.
 double saturated_log_likelihood(std::span<const LevelCounts> counts) {
   double sum = 0.0;
-  for (const LevelCounts& at : counts) {
-    const auto n = static_cast<double>(at.n);
-    sum += times_log(at.correct, std::log(static_cast<double>(at.correct) / n)) +
-           times_log(at.n - at.correct, std::log(static_cast<double>(at.n - at.correct) / n));
+  for (const LevelCounts& point : counts) {
+    const auto n = static_cast<double>(point.n);
+    const std::int64_t wrong = point.n - point.correct;
+    sum += times_log(point.correct, std::log(static_cast<double>(point.correct) / n)) +
+           times_log(wrong, std::log(static_cast<double>(wrong) / n));
   }
   return sum;
 }
@@ -109,26 +110,25 @@ void require_possible(const Observer& observer) {
 }
 
 AnswerShares shares_at(const Observer& observer, double level) noexcept {
-  const AnswerShares felt =
-      without_guessing(observer.shape, observer.slope * (level - observer.threshold));
+  const AnswerShares f = f_shares(observer.shape, observer.slope * (level - observer.threshold));
   const double scale = 1.0 - observer.guess - observer.lapse;
-  return {observer.guess + scale * felt.correct, observer.lapse + scale * felt.wrong};
+  return {observer.guess + scale * f.correct, observer.lapse + scale * f.wrong};
 }
 
 AnswerShares log_shares_at(const Observer& observer, double level) noexcept {
   const AnswerShares shares = shares_at(observer, level);
   AnswerShares logs{std::log(shares.correct), std::log(shares.wrong)};
   if (observer.guess > 0.0 && observer.lapse > 0.0) return logs;
-  const AnswerShares felt =
-      log_without_guessing(observer.shape, observer.slope * (level - observer.threshold));
+  const AnswerShares f =
+      log_f_shares(observer.shape, observer.slope * (level - observer.threshold));
   const double log_scale = std::log(1.0 - observer.guess - observer.lapse);
-  if (observer.guess == 0.0) logs.correct = log_scale + felt.correct;
-  if (observer.lapse == 0.0) logs.wrong = log_scale + felt.wrong;
+  if (observer.guess == 0.0) logs.correct = log_scale + f.correct;
+  if (observer.lapse == 0.0) logs.wrong = log_scale + f.wrong;
   return logs;
 }
 
 double share_at_threshold(Shape shape) noexcept {
-  return without_guessing(shape, 0.0).correct;
+  return f_shares(shape, 0.0).correct;
 }
 
 double level_at(const Observer& observer, double proportion) {
@@ -146,9 +146,9 @@ double width_at_slope_one(Shape shape) {
 
 double log_likelihood(const Observer& observer, std::span<const LevelCounts> counts) {
   double sum = 0.0;
-  for (const LevelCounts& at : counts) {
-    const AnswerShares logs = log_shares_at(observer, at.level);
-    sum += times_log(at.correct, logs.correct) + times_log(at.n - at.correct, logs.wrong);
+  for (const LevelCounts& point : counts) {
+    const AnswerShares logs = log_shares_at(observer, point.level);
+    sum += times_log(point.correct, logs.correct) + times_log(point.n - point.correct, logs.wrong);
   }
   return sum;
 }

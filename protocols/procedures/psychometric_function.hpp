@@ -18,7 +18,7 @@ enum class Shape {
 struct Observer {
   Shape shape = Shape::weibull;
   double threshold = 0.0;  ///< in units of the level; finite
-  double slope = 1.0;      ///< > 0; weibull: beta of 20 dB, otherwise per unit of the level
+  double slope = 1.0;      ///< > 0; weibull: beta per 20 dB, otherwise per unit of the level
   double guess = 0.5;      ///< in [0, 1): probability of a right answer when nothing is felt
   double lapse = 0.0;      ///< in [0, 1 - guess): probability of a wrong answer at any level
 };
@@ -37,10 +37,10 @@ struct AnswerShares {
 /// \param level  any number, also infinite
 [[nodiscard]] AnswerShares shares_at(const Observer& observer, double level) noexcept;
 
-/// Their natural logarithms, finite also where the probability itself underflows.
+/// The natural logarithms of shares_at, finite even where a probability underflows.
 [[nodiscard]] AnswerShares log_shares_at(const Observer& observer, double level) noexcept;
 
-/// F at the threshold: 1/2, or 1 - 1/e for weibull.
+/// The value of F at the threshold: 1/2, or 1 - 1/e for weibull.
 [[nodiscard]] double share_at_threshold(Shape shape) noexcept;
 
 /// The level at which the observer is right with this probability, which is the threshold at this
@@ -64,7 +64,8 @@ struct LevelCounts {
 /// \return at most 0; -infinity if the answers are impossible
 [[nodiscard]] double log_likelihood(const Observer& observer, std::span<const LevelCounts> counts);
 
-/// Twice the distance to the log-likelihood of each level's own proportion; at least 0.
+/// Twice the difference between the log-likelihood of the observed proportions and that of the
+/// observer; at least 0.
 [[nodiscard]] double deviance(const Observer& observer, std::span<const LevelCounts> counts);
 
 /// The Weber fraction dA / A of a level of discrimination, which is 20 log10(dA / A).

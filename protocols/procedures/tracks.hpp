@@ -18,7 +18,7 @@ constexpr std::size_t kMaxTracks = 8;
 
 struct BlockSettings {
   std::vector<TrackSettings> tracks;  ///< 1 to 8
-  int catch_trials = 0;               ///< of all tracks, >= 0, at most one for each two trials
+  int catch_trials = 0;               ///< of all tracks together, 0 to half of their trials
 };
 
 /// One trial of a track: its level, and whether the answer was right.
@@ -27,8 +27,8 @@ struct TrackTrial {
   bool correct = false;
 };
 
-/// A trial of a track. Catch trials are not passed to the procedure, but enter the track's
-/// estimate.
+/// A trial of a track. The answers to catch trials are not passed to the procedure, but enter the
+/// track's estimate.
 struct Presentation {
   std::size_t track = 0;  ///< index
   std::size_t level = 0;  ///< index into the track's levels
@@ -38,10 +38,10 @@ struct Presentation {
 };
 
 /// A block of interleaved tracks. The order of tracks is drawn before the first trial, so that it
-/// reveals nothing about answers: in each round every track with remaining trials comes once, in
-/// random order. The trials are divided into as many equal stretches as there are catch trials.
-/// Each stretch has one catch trial at a random place, but never as the first trial of the block.
-/// Catch trials are assigned to tracks in rounds, too, so that their numbers differ by at most one.
+/// reveals nothing about answers: in each round every track with remaining trials occurs once, in
+/// random order. The trials are divided into equal stretches, each with one catch trial at a random
+/// place, but never as the first trial of the block. Catch trials are assigned to tracks in rounds,
+/// too, so that their numbers differ by at most one.
 /// Not thread-safe.
 class Block {
  public:
@@ -49,7 +49,7 @@ class Block {
   /// \throws std::invalid_argument if a setting is out of range
   Block(BlockSettings settings, const Digest& secret);
 
-  /// \return nothing when all trials are answered
+  /// The next trial; nothing when all are answered.
   [[nodiscard]] std::optional<Presentation> next() const;
 
   /// Records the answer to the trial at next(); has no effect if there is none.
@@ -70,7 +70,7 @@ class Block {
   BlockSettings settings_;
   std::vector<Track> tracks_;
   std::vector<Presentation> order_;  ///< without levels
-  std::size_t done_ = 0;
+  std::size_t answer_count_ = 0;
 };
 
 /// Recreates the state of a block after these answers, to resume a session or verify its record.
@@ -86,11 +86,11 @@ struct RecordedTrial {
 
 /// Verifies a record.
 /// \return index of the first trial that the block would not have presented after the previous
-///   answers, or that comes after the block's end; empty if there is none
+///   answers, or that follows the block's end; empty if there is none
 /// \throws std::invalid_argument as Block
-[[nodiscard]] std::optional<std::size_t> first_not_chosen(const BlockSettings& settings,
-                                                          const Digest& secret,
-                                                          std::span<const RecordedTrial> record);
+[[nodiscard]] std::optional<std::size_t> first_mismatch(const BlockSettings& settings,
+                                                        const Digest& secret,
+                                                        std::span<const RecordedTrial> record);
 
 /// Counts of answers at each level of a track, ascending; levels without trials are omitted.
 /// \pre the trials are of this track

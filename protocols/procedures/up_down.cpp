@@ -8,11 +8,11 @@ namespace touchtrial::procedures {
 namespace {
 
 void require_rule(const UpDown& rule) {
-  const bool steps = !rule.steps_down.empty() &&
-                     std::all_of(rule.steps_down.begin(), rule.steps_down.end(),
-                                 [](int step) { return step >= 1 && step <= 1'000'000; });
-  const bool counts = rule.correct_for_down >= 1 && rule.wrong_for_up >= 1;
-  if (!steps || !counts || rule.up_for_one_down < 1 || rule.up_for_one_down > 1'000) {
+  const bool has_steps = !rule.steps_down.empty() &&
+                         std::all_of(rule.steps_down.begin(), rule.steps_down.end(),
+                                     [](int step) { return step >= 1 && step <= 1'000'000; });
+  const bool has_counts = rule.correct_for_down >= 1 && rule.wrong_for_up >= 1;
+  if (!has_steps || !has_counts || rule.up_for_one_down < 1 || rule.up_for_one_down > 1'000) {
     throw std::invalid_argument("a staircase needs steps and counts of at least 1");
   }
 }
@@ -20,19 +20,19 @@ void require_rule(const UpDown& rule) {
 class Staircase final : public Procedure {
  public:
   Staircase(UpDown rule, std::size_t levels)
-      : rule_(std::move(rule)), top_(levels - 1), at_(rule_.first_level) {
+      : rule_(std::move(rule)), top_(levels - 1), level_(rule_.first_level) {
     require_rule(rule_);
-    if (at_ > top_)
+    if (level_ > top_)
       throw std::invalid_argument("a staircase's first level must be one of the track's levels");
   }
 
-  [[nodiscard]] std::size_t next() const override { return at_; }
+  [[nodiscard]] std::size_t next() const override { return level_; }
 
   void answer(bool correct) override {
-    if (correct != in_a_row_are_correct_) in_a_row_ = 0;
-    in_a_row_are_correct_ = correct;
-    if (++in_a_row_ < (correct ? rule_.correct_for_down : rule_.wrong_for_up)) return;
-    in_a_row_ = 0;
+    if (correct != run_is_correct_) run_length_ = 0;
+    run_is_correct_ = correct;
+    if (++run_length_ < (correct ? rule_.correct_for_down : rule_.wrong_for_up)) return;
+    run_length_ = 0;
     move(correct);
   }
 
@@ -40,24 +40,26 @@ class Staircase final : public Procedure {
   enum class Direction { none, up, down };
 
   void move(bool down) {
-    const Direction turn = down ? Direction::down : Direction::up;
-    if (last_ != Direction::none && last_ != turn && step_ + 1 < rule_.steps_down.size()) ++step_;
-    last_ = turn;
+    const Direction direction = down ? Direction::down : Direction::up;
+    if (last_direction_ != Direction::none && last_direction_ != direction &&
+        step_ + 1 < rule_.steps_down.size())
+      ++step_;
+    last_direction_ = direction;
     const auto step = static_cast<std::size_t>(rule_.steps_down[step_]);
     if (down) {
-      at_ -= std::min(at_, step);
+      level_ -= std::min(level_, step);
     } else {
-      at_ = std::min(top_, at_ + step * static_cast<std::size_t>(rule_.up_for_one_down));
+      level_ = std::min(top_, level_ + step * static_cast<std::size_t>(rule_.up_for_one_down));
     }
   }
 
   UpDown rule_;
   std::size_t top_;
-  std::size_t at_;
+  std::size_t level_;
   std::size_t step_ = 0;  ///< index of the step size
-  int in_a_row_ = 0;
-  bool in_a_row_are_correct_ = false;
-  Direction last_ = Direction::none;
+  int run_length_ = 0;
+  bool run_is_correct_ = false;
+  Direction last_direction_ = Direction::none;
 };
 
 }  // namespace

@@ -16,7 +16,7 @@
 namespace touchtrial::registration {
 
 void register_protocols() {
-  static const bool done = [] {
+  static const bool is_registered = [] {
     study::add_protocol(study::identification::classification());
     study::add_protocol(study::identification::comparison());
     for (const study::Protocol* protocol :
@@ -37,7 +37,7 @@ void register_protocols() {
     planning::add_planner(rating.name, planning::rating::rating_planner());
     return true;
   }();
-  static_cast<void>(done);
+  static_cast<void>(is_registered);
 }
 
 }  // namespace touchtrial::registration

@@ -3,8 +3,8 @@
 
 namespace touchtrial::registration {
 
-/// Registers all protocols with every layer. Call before the first study is read. Further calls do
-/// nothing. Not thread-safe.
+/// Registers all protocols with every layer. Call before the first study is read. Further calls
+/// have no effect. Not thread-safe.
 void register_protocols();
 
 }  // namespace touchtrial::registration

@@ -19,14 +19,14 @@ std::string section(const std::string& title, const std::string& text) {
   return "\n## " + title + "\n\n" + (text.empty() ? "Not stated." : text) + "\n";
 }
 
-std::string line(const std::string& what, const std::string& value) {
-  return "- " + what + ": " + value + "\n";
+std::string line(const std::string& name, const std::string& value) {
+  return "- " + name + ": " + value + "\n";
 }
 
-/// Labels in alphabetical order, so that their order in the study is not revealed.
+/// Lists the labels in alphabetical order, so that their order in the study is not revealed.
 std::string labels_of(const study::Study& study) {
   std::vector<std::string> labels;
-  for (const study::StudyClass& shown : study.classes) labels.push_back(shown.label);
+  for (const study::StudyClass& study_class : study.classes) labels.push_back(study_class.label);
   std::ranges::sort(labels);
   return listed(labels);
 }
@@ -38,26 +38,27 @@ std::string participants_of(const study::Registration& registration) {
 
 std::string lines_of(const study::SettingFields& fields) {
   std::string lines;
-  for (const auto& [what, value] : fields) lines += line(what, value);
+  for (const auto& [name, value] : fields) lines += line(name, value);
   return lines;
 }
 
-/// Describes trials with clocked planes; the rule of orders states the numbers of trials.
-std::string clocked_lines(const study::Study& study, const study::Ask& ask,
-                          const study::InContact& exploring) {
-  return line("planes per trial", std::to_string(ask.planes)) +
+/// Describes trials with timed contact. The rule of orders, on another line, states the number of
+/// trials.
+std::string timed_contact_lines(const study::Study& study, const study::TrialQuestion& question,
+                                const study::TimedContact& exploring) {
+  return line("planes per trial", std::to_string(question.planes)) +
          line("exploration of each", number_text(exploring.seconds) + " s in contact, at " +
                                          study::range_words(exploring.range) + ", within " +
                                          number_text(study.trials.explore_limit_s) +
                                          " s; otherwise the trial is repeated") +
          line("practice", study::practice_words(study)) +
-         line("feedback in trials", ask.feedback ? "yes" : "no");
+         line("feedback in trials", question.feedback ? "yes" : "no");
 }
 
 std::string exploration_lines(const study::Study& study) {
-  const study::Ask ask = study::ask_of(study);
-  if (const auto* const exploring = std::get_if<study::InContact>(&ask.exploring)) {
-    return clocked_lines(study, ask, *exploring);
+  const study::TrialQuestion question = study::trial_question_of(study);
+  if (const auto* const exploring = std::get_if<study::TimedContact>(&question.exploring)) {
+    return timed_contact_lines(study, question, *exploring);
   }
   const study::TrialOptions& trials = study.trials;
   return line("time to explore", number_text(trials.explore_limit_s) + " s") +
@@ -87,8 +88,8 @@ std::string validity_of(const study::ValidityRule& rule) {
   return "A trial is valid if all of these conditions hold:\n\n" + lines_of(study::fields_of(rule));
 }
 
-/// The settings as every database has them in clear, without the stimuli's codes.
-std::string settings_in_clear(const study::StudyCodes& key) {
+/// The settings that every database stores unencrypted, without the stimuli's codes.
+std::string unencrypted_settings(const study::StudyCodes& key) {
   const auto settings = nlohmann::json::parse(key.configuration);
   std::string lines;
   for (const auto& [name, value] : settings.items()) {
@@ -105,8 +106,8 @@ std::string hashes_of(const study::StudyCodes& key, const engine::Pack& pack) {
          line("program", "Touchtrial " + std::string(program_version())) +
          "\nThe seal is SHA-256 over key, schedule rule, seed and configuration; "
          "every database of the study begins with it. With the key, `touchtrial verify` checks "
-         "that a database belongs to the study registered here; without it, that all of it was "
-         "signed by this investigator and the stations that the investigator named.\n";
+         "that a database belongs to the study registered here; without it, that this "
+         "investigator and the stations that the investigator named signed all of it.\n";
 }
 
 }  // namespace
@@ -142,14 +143,14 @@ void require_prepared(const study::Study& study, const study::StudyCodes& key,
   const auto refuse = [&study](const std::string& what) {
     throw UsageError(one_line(study.source + ": " + what));
   };
-  if (key.simulated) refuse("its key is for simulations only; run `touchtrial prepare`");
+  if (key.simulated) refuse("its key is only for simulations; run `touchtrial prepare`");
   if (!study::are_same(study, key.study)) {
     throw UsageError(study::mismatch_of(study, key, key_file, "--key"));
   }
   const engine::PackManifest& manifest = pack.manifest();
   if (manifest.study_id != key.study_id) {
     refuse("the key " + key_file.string() + " belongs to study " + key.study_id +
-           ", but the pack " + pack.folder().string() + " to study " + manifest.study_id +
+           ", but the pack " + pack.folder().string() + " belongs to study " + manifest.study_id +
            "; give the pack's key with --key, or the key's pack with --pack");
   }
   study::require_signed(pack, key.study_id, key.seal, key.investigator_signature);
@@ -169,20 +170,21 @@ std::string registration_page(const study::StudyCodes& key, const engine::Pack& 
          section("Design", design_lines(study)) +
          section("Extraction methods", lines_of(study::fields_of_methods(study))) +
          section("Rendering", lines_of(study::fields_of_rendering(study))) +
-         section("Settings", settings_in_clear(key)) + section("Commitment", hashes_of(key, pack));
+         section("Settings", unencrypted_settings(key)) +
+         section("Commitment", hashes_of(key, pack));
 }
 
 std::vector<std::string> missing_statements(const study::Registration& registration) {
   std::vector<std::string> places;
-  const auto look = [&places](const char* key, bool stated) {
-    if (!stated) places.push_back(std::string("/registration/") + key);
+  const auto check = [&places](const char* key, bool is_stated) {
+    if (!is_stated) places.push_back(std::string("/registration/") + key);
   };
-  look("hypothesis", !registration.hypothesis.empty());
-  look("participants", registration.participants > 0);
-  look("stopping_rule", !registration.stopping_rule.empty());
-  look("exclusions", !registration.exclusions.empty());
-  look("primary_test", !registration.primary_test.empty());
-  look("estimand", registration.analysis.has_value());
+  check("hypothesis", !registration.hypothesis.empty());
+  check("participants", registration.participants > 0);
+  check("stopping_rule", !registration.stopping_rule.empty());
+  check("exclusions", !registration.exclusions.empty());
+  check("primary_test", !registration.primary_test.empty());
+  check("estimand", registration.analysis.has_value());
   return places;
 }
 

@@ -1,4 +1,4 @@
-/// \file What is fixed before the first participant: the commitment at the start of a database, and
+/// \file The commitment to a study before the first participant: the first event of a database, and
 /// the preregistration page with the same hashes.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace touchtrial::session {
 
-/// The first event of a study's file chain.
+/// The body of the first event of a study's file chain.
 [[nodiscard]] record::StudyCommitment commitment_of(const study::StationKey& key,
                                                     const engine::Pack& pack, bool simulated,
                                                     bool pilot);
@@ -20,7 +20,7 @@ namespace touchtrial::session {
                                                     const engine::Pack& pack, bool simulated,
                                                     bool pilot);
 
-/// Checks that key and pack belong to the study in its present form.
+/// Checks that key and pack belong to the current version of the study.
 /// \param study  as read from its file
 /// \param key_file  the file of `key`
 /// \throws UsageError with the difference and the remedy

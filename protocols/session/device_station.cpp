@@ -12,7 +12,7 @@
 namespace touchtrial::session {
 namespace {
 
-std::string need_of(device::DeviceReadiness readiness) {
+std::string readiness_problem(device::DeviceReadiness readiness) {
   using enum device::DeviceReadiness;
   static constexpr auto kNames = std::to_array<Named<device::DeviceReadiness>>(
       {{"the device is not homed; move its handle through its whole range", needs_homing},
@@ -49,25 +49,25 @@ DeviceStation::DeviceStation(Open open, const std::optional<device::PlanePlaceme
     : open_(std::move(open)), placement_(placement), attendant_(attendant) {}
 
 SupplyState DeviceStation::make_ready() {
-  if (device::StopOnSignals::asked()) return SupplyState::stopped;
-  const std::string need = missing();
-  if (need.empty() && armed_) return SupplyState::ready;
-  const Attendant::Reply reply = attendant_.attend(need);
+  if (device::StopOnSignals::stop_requested()) return SupplyState::stopped;
+  const std::string problem = missing_condition();
+  if (problem.empty() && armed_) return SupplyState::ready;
+  const Attendant::Reply reply = attendant_.poll(problem);
   if (reply == Attendant::Reply::stop) return SupplyState::stopped;
   if (reply == Attendant::Reply::at_reset && device_) device_->calibrate();
-  if (reply != Attendant::Reply::arm || !need.empty()) return SupplyState::not_yet;
+  if (reply != Attendant::Reply::arm || !problem.empty()) return SupplyState::not_yet;
   device_->rearm();
   armed_ = true;
   return SupplyState::ready;
 }
 
-std::string DeviceStation::missing() {
+std::string DeviceStation::missing_condition() {
   if (device_ && device_->fault() != device::DeviceFault::none) close();
   if (!device_) {
-    std::string why = open();
-    if (!why.empty()) return why;
+    std::string problem = open();
+    if (!problem.empty()) return problem;
   }
-  return need_of(device_->readiness());
+  return readiness_problem(device_->readiness());
 }
 
 std::string DeviceStation::open() try {
@@ -75,35 +75,36 @@ std::string DeviceStation::open() try {
   // No force is allowed before a person consents.
   device_->halt();
   const device::DeviceInfo info = device_->info();
-  if (!first_) first_ = info;
-  if (identity_of(info) != identity_of(*first_)) {
+  if (!first_info_) first_info_ = info;
+  if (identity_of(info) != identity_of(*first_info_)) {
     close();
     return identity_of(info) + " is not the device with which the session began; connect " +
-           identity_of(*first_);
+           identity_of(*first_info_);
   }
-  if (placement_) placed_.emplace(*device_, *placement_);
+  if (placement_) placed_device_.emplace(*device_, *placement_);
   return "";
 } catch (const Error& error) {
-  // After a loss of power, the firmware file may be missing, too; a person can fix both.
+  // After a power cut the device, or even the file of its firmware, may be missing: a person can
+  // restore either.
   close();
   return error.what();
 }
 
 void DeviceStation::close() noexcept {
-  placed_.reset();
+  placed_device_.reset();
   device_.reset();
   armed_ = false;
 }
 
 device::HapticDevice& DeviceStation::device() {
   if (!device_) throw std::logic_error("DeviceStation: no device is open");
-  if (placed_) return *placed_;
+  if (placed_device_) return *placed_device_;
   return *device_;
 }
 
 const device::DeviceInfo& DeviceStation::info() const {
-  if (!first_) throw std::logic_error("DeviceStation: no device has been opened");
-  return *first_;
+  if (!first_info_) throw std::logic_error("DeviceStation: no device has been opened");
+  return *first_info_;
 }
 
 void describe_station(record::SessionOpening& opening, const device::DeviceInfo& device,

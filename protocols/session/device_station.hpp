@@ -1,5 +1,5 @@
-/// \file Supplies a session with its device, and recovers it after a fault. A real device is opened,
-/// placed, armed with a person's consent, and reopened.
+/// \file Supplies a session with its device, and reopens the device after a fault. A person must
+/// consent before the device is armed.
 #pragma once
 
 #include "device/haptic_device.hpp"
@@ -15,8 +15,8 @@
 namespace touchtrial::session {
 
 enum class SupplyState {
-  ready,    ///< open, homed and armed: forces may be sent
-  not_yet,  ///< something is missing; call again
+  ready,    ///< the device is open, homed and armed: forces may be sent
+  not_yet,  ///< a condition is missing; call again
   stopped,  ///< a person gave up waiting; the session must end
 };
 
@@ -29,10 +29,10 @@ class DeviceSupply {
   /// asks for consent to arm it. May block briefly.
   [[nodiscard]] virtual SupplyState make_ready() = 0;
   /// Called after an interrupted exploration. No force may be sent before a person consents.
-  virtual void interrupted() {}
+  virtual void on_interruption() {}
 };
 
-/// For a device that is always ready: a simulated hand, created for each exploration.
+/// Supplies a device that is always ready: a simulated hand, created for each exploration.
 class AlwaysReady final : public DeviceSupply {
  public:
   [[nodiscard]] SupplyState make_ready() override { return SupplyState::ready; }
@@ -49,10 +49,10 @@ class Attendant {
     at_reset,  ///< the arm is at its reset position: HapticDevice::calibrate
   };
   /// Called repeatedly. May block briefly, for instance to draw a screen.
-  /// \param need  one line on what is missing, with its remedy; empty if nothing is missing, so that
-  ///   force may be switched on when the hand is ready
-  /// \return the reply; `arm` has no effect while something is missing
-  [[nodiscard]] virtual Reply attend(const std::string& need) = 0;
+  /// \param condition  the missing condition and its remedy, in one line; if it is empty, nothing
+  ///   is missing, and force may be switched on when the hand is ready
+  /// \return the reply; `arm` has no effect while a condition is missing
+  [[nodiscard]] virtual Reply poll(const std::string& condition) = 0;
 };
 
 /// Opens the session's device, and reopens it after it was lost. Force is never switched on
@@ -68,21 +68,21 @@ class DeviceStation final : public DeviceSupply {
   DeviceStation(Open open, const std::optional<device::PlanePlacement>& placement,
                 Attendant& attendant);
 
-  /// Refuses a device with another name or serial than the first one. Also returns `stopped` once a
-  /// signal has asked the program to end during an exploration.
+  /// Refuses a device whose name or serial differs from the first one's. Also returns `stopped`
+  /// after a signal that requested the program's end during an exploration.
   [[nodiscard]] SupplyState make_ready() override;
-  void interrupted() override { armed_ = false; }
+  void on_interruption() override { armed_ = false; }
 
   /// The device, in the plane frame; valid until the next `make_ready`.
-  /// \throws std::logic_error if none is open
+  /// \throws std::logic_error if no device is open
   [[nodiscard]] device::HapticDevice& device();
   /// Describes the first device.
-  /// \throws std::logic_error if none has been opened
+  /// \throws std::logic_error if no device has been opened
   [[nodiscard]] const device::DeviceInfo& info() const;
 
  private:
-  /// \return what is missing; empty if nothing is
-  [[nodiscard]] std::string missing();
+  /// \return the missing condition; empty if there is none
+  [[nodiscard]] std::string missing_condition();
   /// \return why the device cannot be opened; empty if it is open
   [[nodiscard]] std::string open();
   void close() noexcept;
@@ -91,8 +91,8 @@ class DeviceStation final : public DeviceSupply {
   std::optional<device::PlanePlacement> placement_;
   Attendant& attendant_;
   std::unique_ptr<device::HapticDevice> device_;
-  std::optional<device::PlacedDevice> placed_;
-  std::optional<device::DeviceInfo> first_;
+  std::optional<device::PlacedDevice> placed_device_;
+  std::optional<device::DeviceInfo> first_info_;
   bool armed_ = false;
 };
 

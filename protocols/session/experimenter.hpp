@@ -1,4 +1,4 @@
-/// \file The interface to the experimenter, who sees a session's state but never what is presented.
+/// \file The interface to the experimenter, who sees a session's state but never its stimuli.
 #pragma once
 
 #include <chrono>
@@ -20,7 +20,7 @@ struct HandLevels {
   friend bool operator==(const HandLevels&, const HandLevels&) = default;
 };
 
-/// What the experimenter is shown. Nothing in it depends on a stimulus or an outcome.
+/// The state that the experimenter sees. Nothing in it depends on a stimulus or an outcome.
 struct SessionStatus {
   std::string participant{};
   /// "day sheet", "instructions", "practice", "ready", "exploring", "answering", ...
@@ -28,23 +28,23 @@ struct SessionStatus {
   /// Number of the current or announced presentation, as in the participant's window; in practice,
   /// within the round. 0: none yet.
   int trial = 0;
-  int of = 0;  ///< total of presentations, with repetitions; in practice, of the round
+  int total = 0;  ///< total of presentations, with repetitions; in practice, of the round
   bool practice = false;
   bool participant_stopped = false;    ///< a comfort stop of the participant is pending
   bool needs_consent = false;          ///< whether force waits for the experimenter's consent
   std::chrono::nanoseconds elapsed{};  ///< since the session's opening
-  std::string device{};                ///< the device's name, and what it needs
-  std::string alert{};                 ///< what the experimenter must do now; empty: nothing
+  std::string device{};                ///< the device's name and condition
+  std::string alert{};                 ///< an instruction to the experimenter; may be empty
   /// Set while a plane is on in real time and the hand is at it.
   std::optional<HandLevels> hand{};
-  // Of the last exploration in real time.
+  // These members describe the last exploration in real time.
   double rate_hz = 0.0;
   double lateness_p99_us = 0.0;
   std::int64_t overruns = 0;
   int interruptions = 0;  ///< of the session
 };
 
-/// A request of the experimenter, which may come at any time.
+/// A request of the experimenter, at any time.
 struct ExperimenterRequest {
   enum class Kind {
     pause,         ///< `text` is the reason

@@ -46,19 +46,19 @@ std::chrono::nanoseconds time_of_tick(std::int64_t tick, double rate_hz) noexcep
 }
 
 TraceBuilder::TraceBuilder(record::Trace& trace, double rate_hz, std::size_t max_samples)
-    : trace_(trace), room_(max_samples) {
+    : trace_(trace), capacity_(max_samples) {
   trace.rate_hz = rate_hz;
   trace.samples.clear();
   trace.samples.reserve(max_samples);
 }
 
-/// Before the first sample there is nothing to hold, so the first sample itself fills the gap.
+/// If there is no sample to hold yet, the first one fills the gap.
 void TraceBuilder::hold_until(std::size_t tick, const record::TraceSample& first) noexcept {
-  const record::TraceSample last = trace_.samples.empty() ? first : trace_.samples.back();
+  const record::TraceSample held_sample = trace_.samples.empty() ? first : trace_.samples.back();
   while (trace_.samples.size() < tick) {
-    trace_.samples.push_back(last);
+    trace_.samples.push_back(held_sample);
     ++held_;
-    held_in_contact_ += last.force_n.z > 0.0 ? 1 : 0;
+    held_in_contact_ += held_sample.force_n.z > 0.0 ? 1 : 0;
   }
 }
 
@@ -84,11 +84,11 @@ Exploration VirtualExplorer::explore(device::ForceSource& force, const PlaneGeom
   TraceBuilder builder(trace, options.rate_hz, max_samples(options));
   device::HapticDevice& device = participant.begin_exploring(plane);
   TrialSink sink(participant, builder);
-  Exploration done;
-  done.servo = device::run_servo_in_virtual_time(device, force, sink, options);
-  done.landed_at = builder.landed_at();
-  done.lasted = time_of_tick(done.servo.ticks, options.rate_hz);
-  return done;
+  Exploration exploration;
+  exploration.servo = device::run_servo_in_virtual_time(device, force, sink, options);
+  exploration.landed_at = builder.landed_at();
+  exploration.duration = time_of_tick(exploration.servo.ticks, options.rate_hz);
+  return exploration;
 }
 
 }  // namespace touchtrial::session

@@ -9,9 +9,9 @@ namespace touchtrial::session {
 namespace {
 
 constexpr double kStepS = 0.05;
-/// Steps of the mean, 0.5 s in all: first an arithmetic mean, then exponential with this time
-/// constant.
-constexpr int kWholeSteps = 10;
+/// The number of steps in the mean, 0.5 s in total. The mean is arithmetic until there are this
+/// many steps; then it is exponential, with this time constant.
+constexpr int kMeanSteps = 10;
 
 HandLevel level_of(double value, double min, double max) noexcept {
   if (value < min) return HandLevel::low;
@@ -38,27 +38,27 @@ void HandMeter::begin() noexcept {
 }
 
 void HandMeter::feel(const device::ServoSample& sample) noexcept {
-  // Negated, so that NaN counts as away from the plane.
+  // The condition is negated, so that NaN counts as away from the plane.
   if (!(sample.position_mm.z <= kLandingHeightMm)) return begin();
   if (samples_ == 0) {
-    first_ = sample;
+    first_sample_ = sample;
     force_n_ = 0.0;
   }
   ++samples_;
   force_n_ += sample.force_n.z;
-  if (sample.tick - first_.tick >= step_ticks_) end_step(sample);
+  if (sample.tick - first_sample_.tick >= step_ticks_) end_step(sample);
 }
 
-void HandMeter::end_step(const device::ServoSample& last) noexcept {
-  const double time_s = static_cast<double>(last.tick - first_.tick) / rate_hz_;
-  const double mm_s = std::hypot(last.position_mm.x - first_.position_mm.x,
-                                 last.position_mm.y - first_.position_mm.y) /
+void HandMeter::end_step(const device::ServoSample& last_sample) noexcept {
+  const double time_s = static_cast<double>(last_sample.tick - first_sample_.tick) / rate_hz_;
+  const double mm_s = std::hypot(last_sample.position_mm.x - first_sample_.position_mm.x,
+                                 last_sample.position_mm.y - first_sample_.position_mm.y) /
                       time_s;
-  steps_ = std::min(steps_ + 1, kWholeSteps);
+  steps_ = std::min(steps_ + 1, kMeanSteps);
   mean_n_ += (force_n_ / static_cast<double>(samples_) - mean_n_) / steps_;
   mean_mm_s_ += (mm_s - mean_mm_s_) / steps_;
   samples_ = 0;
-  if (steps_ == kWholeSteps) publish_levels();
+  if (steps_ == kMeanSteps) publish_levels();
 }
 
 void HandMeter::publish_levels() noexcept {

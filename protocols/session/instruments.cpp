@@ -12,8 +12,8 @@ namespace {
 using record::Mark;
 using Clock = std::chrono::steady_clock;
 
-/// The mark that is sent immediately for an input. Those of plane-on and contact are derived from
-/// the servo's samples.
+/// The mark that an input sends immediately. Plane-on and contact are derived from the servo's
+/// samples.
 std::optional<Mark> mark_of(SessionInput input) {
   switch (input) {
     case SessionInput::end_exploring:
@@ -44,29 +44,29 @@ std::optional<Mark> mark_of(SessionInput input) {
 SessionMarks::SessionMarks(Instruments* instruments, Session& session, double rate_hz)
     : instruments_(instruments), session_(session), rate_hz_(rate_hz) {
   if (instruments_ == nullptr) return;
-  session_.set_observer([this](SessionInput what, int trial) { input(what, trial); });
+  session_.set_observer([this](SessionInput input, int trial) { send_mark_of(input, trial); });
 }
 
-void SessionMarks::input(SessionInput input, int trial) {
+void SessionMarks::send_mark_of(SessionInput input, int trial) {
   if (input == SessionInput::present || input == SessionInput::explore_again) trial_ = trial;
-  const std::optional<Mark> known = mark_of(input);
-  if (!known) return;
-  const bool is_in_trial = *known == Mark::plane_off || *known == Mark::time_up ||
-                           *known == Mark::interrupted || *known == Mark::answered;
-  mark(*known, is_in_trial ? trial : 0, Clock::now());
-  if (*known == Mark::answered || *known == Mark::interrupted) trial_ = 0;
+  const std::optional<Mark> new_mark = mark_of(input);
+  if (!new_mark) return;
+  const bool is_in_trial = *new_mark == Mark::plane_off || *new_mark == Mark::time_up ||
+                           *new_mark == Mark::interrupted || *new_mark == Mark::answered;
+  mark(*new_mark, is_in_trial ? trial : 0, Clock::now());
+  if (*new_mark == Mark::answered || *new_mark == Mark::interrupted) trial_ = 0;
 }
 
-void SessionMarks::plane_is_on(TimePoint began) noexcept {
+void SessionMarks::note_plane_on(TimePoint began) noexcept {
   if (instruments_ == nullptr) return;
-  began_ = began;
+  plane_on_at_ = began;
   has_landed_ = false;
   mark(Mark::plane_on, trial_, began);
 }
 
 void SessionMarks::feel(const device::ServoSample& sample) noexcept {
   if (instruments_ == nullptr) return;
-  const TimePoint at = began_ + time_of_tick(sample.tick, rate_hz_);
+  const TimePoint at = plane_on_at_ + time_of_tick(sample.tick, rate_hz_);
   if (!std::exchange(has_landed_, has_landed_ || sample.position_mm.z < kLandingHeightMm) &&
       has_landed_) {
     mark(Mark::contact, trial_, at);
@@ -77,24 +77,24 @@ void SessionMarks::feel(const device::ServoSample& sample) noexcept {
 void SessionMarks::mark(Mark mark, int trial, TimePoint at) noexcept {
   if (instruments_ == nullptr) return;
   instruments_->mark(mark, trial, at);
-  notices_.push_back({mark, trial, at});
+  sent_.push_back({mark, trial, at});
 }
 
 std::optional<record::MarksBody> SessionMarks::take(SessionClock& clock) {
-  if (instruments_ == nullptr || notices_.empty()) return std::nullopt;
+  if (instruments_ == nullptr || sent_.empty()) return std::nullopt;
   const TimePoint now = Clock::now();
-  const TimePoint zero = now - clock.of(now);
+  const TimePoint zero = now - clock.time_of(now);
   const Instruments::Report report = instruments_->take();
-  if (report.latencies.size() != notices_.size()) {
+  if (report.latencies.size() != sent_.size()) {
     throw std::logic_error("instruments: the number of latencies differs from the number of marks");
   }
   record::MarksBody body;
-  for (std::size_t i = 0; i < notices_.size(); ++i) {
-    const Notice& one = notices_[i];
-    body.codes.push_back(static_cast<int>(one.mark));
-    body.trials.push_back(one.trial);
-    // A resumed session may have events from before the instruments' clock was read.
-    body.at_ns.push_back(std::max<std::int64_t>(0, (one.at - zero).count()));
+  for (std::size_t i = 0; i < sent_.size(); ++i) {
+    const SentMark& sent = sent_[i];
+    body.codes.push_back(static_cast<int>(sent.mark));
+    body.trials.push_back(sent.trial);
+    // In a resumed session, marks may precede the zero of the clock.
+    body.at_ns.push_back(std::max<std::int64_t>(0, (sent.at - zero).count()));
     body.latency_ns.push_back(std::max<std::int64_t>(
         0, report.latencies[i].value_or(std::chrono::nanoseconds(0)).count()));
   }
@@ -103,7 +103,7 @@ std::optional<record::MarksBody> SessionMarks::take(SessionClock& clock) {
         *report.clock_zero_s + std::chrono::duration<double>(zero.time_since_epoch()).count();
     body.lsl_uncertainty_s = report.clock_uncertainty_s;
   }
-  notices_.clear();
+  sent_.clear();
   return body;
 }
 

@@ -13,7 +13,7 @@
 
 namespace touchtrial::session {
 
-/// The instruments themselves. All functions are thread-safe; only `take` waits.
+/// The instruments. All functions are thread-safe; only `take` waits.
 class Instruments {
  public:
   using Mark = record::Mark;
@@ -37,15 +37,15 @@ class Instruments {
   [[nodiscard]] virtual Report take() = 0;
 };
 
-/// Sends marks of a session's events to instruments, and collects what the session records about
-/// them. The session's thread makes all calls except `plane_is_on` and `feel`.
+/// Sends marks of a session's events to instruments, and collects the marks for the session's
+/// record. The session's thread makes all calls except `note_plane_on` and `feel`.
 class SessionMarks {
  public:
   using Mark = record::Mark;
   using TimePoint = Instruments::TimePoint;
 
   /// \param instruments  null: no mark is sent; otherwise must outlive this
-  /// \param session  notifies this object of its inputs from now on; must outlive it
+  /// \param session  notifies this object of its inputs; must outlive it
   /// \param rate_hz  of the servo
   SessionMarks(Instruments* instruments, Session& session, double rate_hz);
   ~SessionMarks() { session_.set_observer({}); }
@@ -55,19 +55,19 @@ class SessionMarks {
   void begin() { mark(Mark::session_begins, 0, std::chrono::steady_clock::now()); }
   void end() { mark(Mark::session_ends, 0, std::chrono::steady_clock::now()); }
   /// Called on the servo's thread, before its first tick.
-  void plane_is_on(TimePoint began) noexcept;
+  void note_plane_on(TimePoint began) noexcept;
   /// Called on the thread that receives the servo's samples.
   void feel(const device::ServoSample& sample) noexcept;
 
-  /// \param clock  of the session, in real time
+  /// \param clock  the session's clock, in real time
   /// \return the marks since the last call; nothing if there are none
   [[nodiscard]] std::optional<record::MarksBody> take(SessionClock& clock);
 
  private:
-  void input(SessionInput input, int trial);
+  void send_mark_of(SessionInput input, int trial);
   void mark(Mark mark, int trial, TimePoint at) noexcept;
 
-  struct Notice {
+  struct SentMark {
     Mark mark{};
     int trial = 0;
     TimePoint at;
@@ -77,9 +77,9 @@ class SessionMarks {
   Session& session_;
   double rate_hz_;
   int trial_ = 0;  ///< set between explorations
-  TimePoint began_;
+  TimePoint plane_on_at_;
   bool has_landed_ = false;
-  std::vector<Notice> notices_;  ///< used by several threads, but never concurrently
+  std::vector<SentMark> sent_;  ///< used by several threads, but never concurrently
 };
 
 }  // namespace touchtrial::session

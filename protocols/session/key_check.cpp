@@ -39,7 +39,7 @@ void require_same_study(const study::StudyKey& key, const study::StationKey& sta
   const auto code = [](const study::KeyedStimulus& keyed) { return keyed.code; };
   check(std::ranges::equal(station.fields(), key.fields(), {}, code, code) &&
             station.catch_code == key.catch_code,
-        "has different codes than the key; give the station the file that was made with the "
+        "has codes that differ from the key's; give the station the file that was made with the "
         "key");
 }
 
@@ -47,22 +47,22 @@ void require_same_secrets(const study::StudyKey& key, const study::StationKey& s
   check(station.investigator_box == key.box().public_half &&
             station.investigator_signature == key.signer().public_half(),
         "encrypts for another investigator; give the station the file that was made with this key");
-  const auto own = std::ranges::find(key.stations, station.station.name, &study::Station::name);
-  if (own == key.stations.end() && key.stations.front().name == study::kOnlyStation) {
+  const auto key_station =
+      std::ranges::find(key.stations, station.station.name, &study::Station::name);
+  if (key_station == key.stations.end() && key.stations.front().name == study::kOnlyStation) {
     refuse_older_key("belongs to a station that the key does not have");
   }
-  check(own != key.stations.end(),
+  check(key_station != key.stations.end(),
         "belongs to a station that the key does not have; give the station the file that "
         "`touchtrial plan` wrote");
-  check(station.station.secret == own->secret,
-        "has a different secret than the key has for this station; give the station the file that "
-        "was "
-        "made with this key");
-  if (own->size() < station.station.size()) {
+  check(station.station.secret == key_station->secret,
+        "has a secret that differs from the key's for this station; give the station the file that "
+        "was made with this key");
+  if (key_station->size() < station.station.size()) {
     refuse_older_key("has enrolment numbers that the key does not have");
   }
-  check(station.station.ranges == own->ranges,
-        "has different enrolment numbers than the key has for this station; give the station "
+  check(station.station.ranges == key_station->ranges,
+        "has enrolment numbers that differ from the key's for this station; give the station "
         "its new file");
   const Bytes statement =
       station_statement(station.study_id, station.station.name, station.signer().public_half());
@@ -85,12 +85,13 @@ TestRecord test_record(const study::StationKey& station) {
   const SecretKey key = entropy.secret("participant key");
   record.wrapped =
       record::wrap_participant_key(station.investigator_box, kTestSession, key).participant;
-  record.station_copy = record::keep_participant_key(station.station.secret, kTestSession, key);
+  record.station_copy = record::seal_station_copy(station.station.secret, kTestSession, key);
   auto order =
       study::make_order(station.study, station.draw_of(record.enrolment, study::Draws::people));
   const std::string schedule = study::schedule_to_json(order->schedule(), station);
   Session session(std::move(order), station.study.trials,
-                  record::SessionRecorder(kTestSession, key, record.events), seal_with(station));
+                  record::SessionRecorder(kTestSession, key, record.events),
+                  block_serialiser(station));
   record::SessionOpening opening;
   opening.participant = "test";
   opening.enrolment = record.enrolment;
@@ -103,24 +104,25 @@ TestRecord test_record(const study::StationKey& station) {
 /// The schedule in a record, decrypted with the key; nothing if it cannot be decrypted.
 std::optional<study::Schedule> opened_schedule(const study::StudyKey& key,
                                                const TestRecord& record) {
-  const auto own = record::unwrap_participant_key(key.box(), kTestSession, record.wrapped);
-  if (!own) return std::nullopt;
-  const auto opened = record::opened_event(record.events.events.front(), *own);
+  const auto participant_key =
+      record::unwrap_participant_key(key.box(), kTestSession, record.wrapped);
+  if (!participant_key) return std::nullopt;
+  const auto opened = record::opened_event(record.events.events.front(), *participant_key);
   if (!opened) return std::nullopt;
   return study::schedule_from_json(opened->secret, key);
 }
 
 }  // namespace
 
-void require_opens(const study::StudyKey& key, const study::StationKey& station,
-                   const engine::Pack& pack) {
+void require_decryptable(const study::StudyKey& key, const study::StationKey& station,
+                         const engine::Pack& pack) {
   require_same_study(key, station);
   require_same_secrets(key, station);
   study::require_complete_pack(pack, station);
   check(!station.station.ranges.empty(),
-        "has no enrolment numbers; hand some out with `touchtrial plan --extend`");
+        "has no enrolment numbers; assign some with `touchtrial plan --extend`");
   const TestRecord record = test_record(station);
-  check(record::kept_participant_key(station.station.secret, kTestSession, record.station_copy) ==
+  check(record::open_station_copy(station.station.secret, kTestSession, record.station_copy) ==
             record::unwrap_participant_key(key.box(), kTestSession, record.wrapped),
         "wrote a test record that the station cannot decrypt; run `touchtrial prepare`");
   const auto schedule = opened_schedule(key, record);

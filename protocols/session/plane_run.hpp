@@ -12,30 +12,33 @@
 namespace touchtrial::session {
 
 /// The force of one plane until its clock has run out. The clock runs while the hand explores as
-/// instructed (study::InContact). The force starts once the hand has been above the plane, so that
-/// no plane begins inside the wall.
+/// instructed (study::TimedContact). The force starts once the hand has been above the plane, so
+/// that no plane begins inside the wall.
 class IntervalForce final : public device::ForceSource {
  public:
-  /// \param stiffness_n_per_mm  of the wall
-  /// \param ticks  of exploration, >= 1
+  /// \param stiffness_n_per_mm  the wall's stiffness
+  /// \param ticks  duration of the exploration, >= 1
   IntervalForce(const engine::RenderingModel& model, double stiffness_n_per_mm,
                 const study::HandRange& range, std::int64_t ticks) noexcept
-      : model_(model), stiffness_n_per_mm_(stiffness_n_per_mm), range_(range), left_(ticks) {}
+      : model_(model),
+        stiffness_n_per_mm_(stiffness_n_per_mm),
+        range_(range),
+        remaining_ticks_(ticks) {}
 
   [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override;
-  [[nodiscard]] bool is_done() const noexcept override { return left_ <= 0; }
+  [[nodiscard]] bool is_done() const noexcept override { return remaining_ticks_ <= 0; }
 
  private:
   engine::RenderingModel model_;
   engine::Bristle touch_;
   double stiffness_n_per_mm_;
   study::HandRange range_;
-  std::int64_t left_;
+  std::int64_t remaining_ticks_;
   bool has_lifted_ = false;
 };
 
 /// The lateral forces of a simulated circular stroke, for any position of the device. It reproduces
-/// the sound of the motors with the hand off (study::Played), and stops by itself.
+/// the sound of the motors with the hand off (study::PlayedStroke), and ends after its time.
 class PlayedForce final : public device::ForceSource {
  public:
   PlayedForce(const engine::RenderingModel& model, const PlaneGeometry& plane,
@@ -43,18 +46,18 @@ class PlayedForce final : public device::ForceSource {
       : model_(model),
         plane_(plane),
         stiffness_n_per_mm_(stiffness_n_per_mm),
-        left_(ticks),
+        remaining_ticks_(ticks),
         rate_hz_(rate_hz) {}
 
   [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override;
-  [[nodiscard]] bool is_done() const noexcept override { return left_ <= 0; }
+  [[nodiscard]] bool is_done() const noexcept override { return remaining_ticks_ <= 0; }
 
  private:
   engine::RenderingModel model_;
   engine::Bristle touch_;
   PlaneGeometry plane_;
   double stiffness_n_per_mm_;
-  std::int64_t left_;
+  std::int64_t remaining_ticks_;
   double rate_hz_;
   std::int64_t tick_ = 0;
 };
@@ -62,11 +65,11 @@ class PlayedForce final : public device::ForceSource {
 /// How the presentation of a trial's planes ended.
 enum class PlanesEnd {
   explored,      ///< all planes were explored as instructed
-  time_is_up,    ///< time ran out on a freely explored plane, and the study rejects late answers
-  not_explored,  ///< time ran out before a plane's clock did
+  time_is_up,    ///< time is up on a freely explored plane, and the study rejects late answers
+  not_explored,  ///< the time limit was reached before a plane's clock ran out
   interrupted,   ///< by a fault or a comfort stop during an exploration
   paused,        ///< by the experimenter; the trial starts over afterwards
-  aborted,       ///< between two explorations, because the session was stopped, left or interrupted
+  aborted,       ///< ended between two explorations: the session was stopped, left or interrupted
 };
 
 /// Callbacks of each exploration.
@@ -74,11 +77,12 @@ struct PlaneListener {
   /// Called before a plane is rendered; returns the trace to fill, or null if the plane is late and
   /// the trial must start over.
   std::function<record::Trace*()> plane_on;
+  /// Called after each exploration.
   std::function<void(const Exploration&)> explored;
 };
 
 /// Presents the planes of a trial.
-/// \param servo  of each exploration
+/// \param servo  options of each exploration
 [[nodiscard]] PlanesEnd run_planes(SessionDesk& desk, const study::Trial& trial,
                                    const device::ServoOptions& servo,
                                    const PlaneListener& listener);

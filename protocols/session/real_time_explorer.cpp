@@ -22,14 +22,14 @@
 namespace touchtrial::session {
 namespace {
 
-/// How long the session's thread waits for the servo's end before it polls the participant again.
+/// The interval at which the session's thread polls the participant while the servo runs.
 constexpr std::chrono::milliseconds kPollInterval{5};
 
 /// Maximum capacity of the ring, samples: 6.5 s at 10 kHz. A writer that falls further behind loses
 /// samples.
 constexpr std::size_t kMaxRing = std::size_t{1} << 16U;
 
-// The writer polls, because the servo must not spend time on waking it.
+// The writer polls, because the servo must not spend time waking it.
 constexpr std::chrono::milliseconds kDrainInterval{2};
 constexpr std::size_t kBatchSize = 256;
 
@@ -37,7 +37,8 @@ constexpr std::size_t kBatchSize = 256;
 /// trace and the participant. Constructed and destroyed on the same thread.
 class TraceWriter {
  public:
-  /// All arguments must outlive this, which has exclusive use of `builder` and Participant::feel.
+  /// All arguments must outlive this. Meanwhile, nothing else may use `builder` or call
+  /// Participant::feel.
   TraceWriter(device::SampleRing& ring, TraceBuilder& builder, Participant& participant)
       : ring_(ring), builder_(builder), participant_(participant), thread_([this] { write(); }) {}
   /// Drains the ring. The servo must have ended.
@@ -101,7 +102,8 @@ record::InterruptionDetail detail_of(const device::ServoReport& report,
 }  // namespace
 
 struct RealTimeExplorer::Impl {
-  explicit Impl(const RealTimeOptions& wanted) : options(wanted), thread(wanted.scheduling) {}
+  explicit Impl(const RealTimeOptions& requested)
+      : options(requested), thread(requested.scheduling) {}
 
   [[nodiscard]] std::unique_ptr<device::ServoClock> make_clock() const {
     if (options.clock) return options.clock();
@@ -111,8 +113,8 @@ struct RealTimeExplorer::Impl {
 
   /// Allocates the servo's memory before it runs.
   void allocate(const device::ServoOptions& servo) {
-    const std::size_t wanted = std::clamp(max_samples(servo), std::size_t{1}, kMaxRing);
-    if (!ring || ring->capacity() < wanted) ring.emplace(wanted);
+    const std::size_t capacity = std::clamp(max_samples(servo), std::size_t{1}, kMaxRing);
+    if (!ring || ring->capacity() < capacity) ring.emplace(capacity);
     if (!recorder || recorder_rate_hz != servo.rate_hz) {
       recorder.emplace(options.flight_s, servo.rate_hz);
       recorder_rate_hz = servo.rate_hz;
@@ -157,14 +159,14 @@ device::ServoReport RealTimeExplorer::Impl::run(device::HapticDevice& device,
   device::ServoReport report;
   device::RunningServo running(thread, control, [&] {
     began = std::chrono::steady_clock::now();
-    participant.plane_is_on(began);
+    participant.note_plane_on(began);
     report = device::run_servo(device, force, sink, servo, *clock, hooks);
   });
-  while (running.runs(kPollInterval)) participant.exploring(control);
+  while (running.is_running(kPollInterval)) participant.while_exploring(control);
   running.finish();
   if (watchdog.disarm() && !is_interrupted(report)) {
-    // The watchdog tripped just as the run ended by itself. It has halted the device, so this
-    // counts as an interruption.
+    // The watchdog tripped just as the run ended. It has halted the device, so this counts as an
+    // interruption.
     report.end = device::ServoEnd::fault;
     report.fault = device::SafetyFault::stalled;
   }
@@ -191,22 +193,25 @@ device::ServoControl& RealTimeExplorer::control() noexcept {
 Exploration RealTimeExplorer::explore(device::ForceSource& force, const PlaneGeometry& plane,
                                       Participant& participant, const device::ServoOptions& options,
                                       record::Trace& trace) {
-  Impl& m = *impl_;
-  m.allocate(options);
+  Impl& impl = *impl_;
+  impl.allocate(options);
   device::HapticDevice& device = participant.begin_exploring(plane);
   TraceBuilder builder(trace, options.rate_hz, max_samples(options));
-  device::RingSink sink(*m.ring);
-  Exploration done;
+  device::RingSink sink(*impl.ring);
+  Exploration exploration;
   {
-    const TraceWriter writer(*m.ring, builder, participant);
-    done.servo = m.run(device, force, sink, options, participant, done.began.emplace());
+    const TraceWriter writer(*impl.ring, builder, participant);
+    exploration.servo =
+        impl.run(device, force, sink, options, participant, exploration.servo_start.emplace());
   }
-  done.landed_at = builder.landed_at();
-  done.lasted = time_of_tick(done.servo.ticks + done.servo.overruns, options.rate_hz);
-  done.held_in_contact = builder.held_in_contact();
-  done.health = health_of(done.servo, sink.dropped(), builder.held());
-  if (is_interrupted(done.servo)) done.detail = detail_of(done.servo, m.recorder->ticks());
-  return done;
+  exploration.landed_at = builder.landed_at();
+  exploration.duration =
+      time_of_tick(exploration.servo.ticks + exploration.servo.overruns, options.rate_hz);
+  exploration.held_in_contact = builder.held_in_contact();
+  exploration.health = health_of(exploration.servo, sink.dropped(), builder.held());
+  if (is_interrupted(exploration.servo))
+    exploration.detail = detail_of(exploration.servo, impl.recorder->ticks());
+  return exploration;
 }
 
 }  // namespace touchtrial::session

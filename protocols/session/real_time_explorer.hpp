@@ -17,7 +17,7 @@ struct RealTimeOptions {
   double flight_s = 3.0;  ///< length of the flight record, > 0
   /// The watchdog's time; must outlive the explorer.
   device::WatchdogTime* watchdog_time = &device::system_watchdog_time();
-  /// Makes the clock of each exploration; empty: a PacedClock. For tests.
+  /// Creates the clock of each exploration; empty: a PacedClock. For tests.
   std::function<std::unique_ptr<device::ServoClock>()> clock{};
 };
 
@@ -33,7 +33,7 @@ class RealTimeExplorer final : public Explorer {
   ~RealTimeExplorer() override;
 
   [[nodiscard]] bool in_real_time() const noexcept override { return true; }
-  /// \throws what `participant.exploring` throws; the force is zero by then
+  /// \throws exceptions of `participant.while_exploring`, after setting the force to zero
   [[nodiscard]] Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                     Participant& participant, const device::ServoOptions& options,
                                     record::Trace& trace) override;

@@ -11,14 +11,14 @@
 namespace touchtrial::session {
 namespace {
 
-/// Whether at least 95 % of 20 answers or more are at the same position.
+/// Whether there are 20 or more answers, at least 95 % of them at the same position.
 bool is_one_key(const std::map<int, int>& answers, int n) {
   constexpr int kMinAnswers = 20;
-  constexpr int kMaxOthersOneIn = 20;
+  constexpr int kInverseOtherShare = 20;
   if (n < kMinAnswers) return false;
   const auto& [position, at_position] =
       *std::ranges::max_element(answers, {}, &std::pair<const int, int>::second);
-  return (n - at_position) * kMaxOthersOneIn <= n;
+  return (n - at_position) * kInverseOtherShare <= n;
 }
 
 }  // namespace
@@ -42,19 +42,19 @@ std::string_view name_of(SessionInput input) {
   return kNames[static_cast<std::size_t>(input)];
 }
 
-SealBlock seal_with(const study::StudyCodes& codes) {
+SerialiseBlock block_serialiser(const study::StudyCodes& codes) {
   return [&codes](const std::vector<study::Trial>& trials) {
     return study::block_to_json(trials, codes);
   };
 }
 
 Session::Session(std::unique_ptr<study::Order> order, const study::TrialOptions& options,
-                 record::SessionRecorder recorder, SealBlock seal)
+                 record::SessionRecorder recorder, SerialiseBlock seal)
     : course_(std::move(order), options.on_interruption),
       options_(options),
       recorder_(std::move(recorder)),
-      seal_block_(std::move(seal)) {
-  if (options.on_interruption == study::OnInterruption::restart_block && !seal_block_) {
+      serialise_block_(std::move(seal)) {
+  if (options.on_interruption == study::OnInterruption::restart_block && !serialise_block_) {
     throw std::invalid_argument("Session: `seal` is required if the study restarts blocks");
   }
 }
@@ -68,13 +68,13 @@ bool Session::in_presentation() const noexcept {
   return phase == Phase::exploring || phase == Phase::answering || phase == Phase::chosen;
 }
 
-bool Session::is_changed() const noexcept {
-  const auto* const chosen = answer_ ? std::get_if<Chosen>(&*answer_) : nullptr;
-  return chosen != nullptr && chosen->first_position.has_value();
+bool Session::has_changed_choice() const noexcept {
+  const auto* const choice = answer_ ? std::get_if<ChoiceAnswer>(&*answer_) : nullptr;
+  return choice != nullptr && choice->first_position.has_value();
 }
 
 bool Session::accepts(SessionInput input) const noexcept {
-  const bool answering = phase_ == Phase::answering || phase_ == Phase::chosen;
+  const bool is_answering = phase_ == Phase::answering || phase_ == Phase::chosen;
   switch (input) {
     case Input::open:
       return phase_ == Phase::fresh;
@@ -91,11 +91,11 @@ bool Session::accepts(SessionInput input) const noexcept {
       return phase_ == Phase::exploring;
     case Input::interrupt:
     case Input::keep_evidence:
-      return phase_ == Phase::exploring || answering;
+      return phase_ == Phase::exploring || is_answering;
     case Input::explore_again:
-      return answering && !was_timed_out_;
+      return is_answering && !was_timed_out_;
     case Input::choose:
-      return answering && !is_changed();
+      return is_answering && !has_changed_choice();
     case Input::confirm:
       return phase_ == Phase::chosen;
     case Input::practise:
@@ -120,7 +120,7 @@ void Session::require(SessionInput input, Time at) const {
     throw std::logic_error("a session in the phase " + std::string(name_of(phase_)) +
                            " does not accept the input " + std::string(name_of(input)));
   }
-  if (at < last_) throw std::logic_error("the session's time went backwards");
+  if (at < last_) throw std::logic_error("the session's time ran backwards");
   if (observer_) observer_(input, current() == nullptr ? 0 : current()->place.trial);
 }
 
@@ -133,12 +133,13 @@ SessionPhase Session::between_trials() const noexcept {
   return course_.is_over() ? Phase::finished : Phase::ready;
 }
 
-bool Session::break_due() const noexcept {
+bool Session::is_break_due() const noexcept {
   if (phase_ != Phase::ready || done_since_break_ == 0) return false;
-  const bool by_trials = options_.break_every > 0 && done_since_break_ >= options_.break_every;
-  const std::chrono::duration<double, std::ratio<60>> since = last_ - work_began_at_;
-  const bool by_time = options_.break_after_min > 0.0 && since.count() >= options_.break_after_min;
-  return by_trials || by_time;
+  const bool due_by_trials = options_.break_every > 0 && done_since_break_ >= options_.break_every;
+  const std::chrono::duration<double, std::ratio<60>> work = last_ - work_began_at_;
+  const bool due_by_time =
+      options_.break_after_min > 0.0 && work.count() >= options_.break_after_min;
+  return due_by_trials || due_by_time;
 }
 
 void Session::open(Time at, const record::SessionOpening& opening,
@@ -191,10 +192,10 @@ void Session::end_exploring(Time at) {
 
 void Session::time_out(Time at) {
   require(Input::time_out, at);
-  const bool over = options_.on_timeout == study::OnTimeout::no_response;
-  recorder_.timed_out(at, current()->place.trial, over ? evidence_ : std::nullopt);
+  const bool is_done = options_.on_timeout == study::OnTimeout::no_response;
+  recorder_.timed_out(at, current()->place.trial, is_done ? evidence_ : std::nullopt);
   was_timed_out_ = true;
-  if (over) {
+  if (is_done) {
     finish_presentation(at, std::nullopt);
   } else {
     move_to(Phase::answering, at);
@@ -226,11 +227,13 @@ void Session::explore_again(Time at) {
 void Session::choose(int position) {
   require(Input::choose, last_);
   if (position < 0 || position >= static_cast<int>(layout().size())) {
-    throw std::invalid_argument("no choice is at position " + std::to_string(position));
+    throw std::invalid_argument("there is no choice at position " + std::to_string(position));
   }
-  const auto* const before = answer_ ? std::get_if<Chosen>(&*answer_) : nullptr;
-  if (before != nullptr && before->position == position) return;  // the same choice is not a change
-  answer_ = before != nullptr ? Chosen{position, before->position} : Chosen{position};
+  const auto* const previous = answer_ ? std::get_if<ChoiceAnswer>(&*answer_) : nullptr;
+  if (previous != nullptr && previous->position == position)
+    return;  // the same choice is not a change
+  answer_ =
+      previous != nullptr ? ChoiceAnswer{position, previous->position} : ChoiceAnswer{position};
   phase_ = Phase::chosen;
 }
 
@@ -239,7 +242,7 @@ void Session::rate(std::vector<double> values) {
   if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
     throw std::invalid_argument("a rating is not a finite number");
   }
-  answer_ = Rated{std::move(values)};
+  answer_ = RatingAnswer{std::move(values)};
   phase_ = Phase::chosen;
 }
 
@@ -260,7 +263,7 @@ void Session::confirm(Time at, std::optional<int> confidence) {
 
 void Session::count(const Answer& answer) {
   ++answered_;
-  if (const auto* const chosen = std::get_if<Chosen>(&answer)) ++choices_[chosen->position];
+  if (const auto* const choice = std::get_if<ChoiceAnswer>(&answer)) ++choices_[choice->position];
 }
 
 std::optional<int> Session::current_trial_number() const noexcept {
@@ -287,9 +290,9 @@ void Session::void_presentation(Time at, const std::string& reason) {
 
 void Session::restart_block(Time at) {
   if (!course_.block_to_restart()) return;
-  const study::BlockRestart again = course_.redrawn_block(*course_.block_to_restart());
-  recorder_.block_restarted(at, again.block, again.first_trial(), seal_block_(again.trials));
-  course_.restart(again);
+  const study::BlockRestart block = course_.redrawn_block(*course_.block_to_restart());
+  recorder_.block_restarted(at, block.block, block.first_trial(), serialise_block_(block.trials));
+  course_.restart(block);
   done_since_break_ = 0;
   move_to(phase_, at);
 }
@@ -364,10 +367,10 @@ void Session::stop(Time at, const std::string& reason, const std::string& code) 
   move_to(Phase::stopped, at);
 }
 
-void Session::close(Time at, bool may_name_one_key) {
+void Session::close(Time at, bool states_one_key) {
   require(Input::close, at);
   recorder_.closed(at, phase_ == Phase::finished, answered_,
-                   may_name_one_key && is_one_key(choices_, answered_), largest_force_n_);
+                   states_one_key && is_one_key(choices_, answered_), largest_force_n_);
   move_to(Phase::closed, at);
 }
 

@@ -1,4 +1,4 @@
-/// \file The state machine of one session: which inputs each phase accepts, and what they record.
+/// \file The state machine of one session: the inputs that each phase accepts, and their events.
 /// Simulated and real sessions share it; it is independent of participants and clocks.
 #pragma once
 
@@ -63,19 +63,19 @@ enum class SessionInput {
 [[nodiscard]] std::string_view name_of(SessionInput input);
 
 /// Serialises a restarted block's trials for sealing (OnInterruption::restart_block).
-using SealBlock = std::function<std::string(const std::vector<study::Trial>&)>;
+using SerialiseBlock = std::function<std::string(const std::vector<study::Trial>&)>;
 /// \param codes  must outlive the session
-[[nodiscard]] SealBlock seal_with(const study::StudyCodes& codes);
+[[nodiscard]] SerialiseBlock block_serialiser(const study::StudyCodes& codes);
 
 /// The remarks recorded so far, so that no question is asked twice.
 struct SessionRemarks {
   std::set<std::string> ticked;                ///< items of the day sheet
-  std::set<std::string> deviations;            ///< codes
+  std::set<std::string> deviations;            ///< codes of deviations
   std::set<std::string> questionnaires;        ///< names
   std::vector<record::PracticeBody> practice;  ///< in chronological order
 };
 
-/// A session as an event-driven state machine, which owns its place in the schedule and the
+/// A session as an event-driven state machine, which owns its position in the schedule and the
 /// recorder. Times are arguments: they count from the session's opening and never decrease.
 ///
 /// Every input below throws std::logic_error if the phase does not accept it (see `accepts`) or if
@@ -88,7 +88,7 @@ class Session {
 
   /// \param seal  needed only if the study restarts blocks
   Session(std::unique_ptr<study::Order> order, const study::TrialOptions& options,
-          record::SessionRecorder recorder, SealBlock seal = {});
+          record::SessionRecorder recorder, SerialiseBlock seal = {});
 
   /// Restores the state after a session's stored events; the recorder continues after the last one.
   /// Records nothing.
@@ -99,8 +99,8 @@ class Session {
   /// one, and ends a pause.
   void resume_after_exit(Time at, const record::ResumedBody& body);
 
-  /// Called for every accepted input, before it is recorded, with the current trial's number (0 if
-  /// none is left).
+  /// Called for every accepted input, before it is recorded, with the current trial's number (0
+  /// after the last).
   using Observer = std::function<void(SessionInput, int trial)>;
   void set_observer(Observer observer) { observer_ = std::move(observer); }
 
@@ -114,7 +114,7 @@ class Session {
   /// The current trial, or between trials the next one; null when all are done.
   [[nodiscard]] const study::Trial* current() const noexcept { return course_.current(); }
   /// The number of remaining presentations, including the current one.
-  [[nodiscard]] int presentations_left() const noexcept { return course_.left(); }
+  [[nodiscard]] int presentations_left() const noexcept { return course_.remaining(); }
   /// The number of presentations begun so far, including interrupted ones.
   [[nodiscard]] int presentations_begun() const noexcept { return begun_; }
   /// Whether a presentation has begun and is not done.
@@ -122,15 +122,15 @@ class Session {
   [[nodiscard]] const SessionRemarks& remarks() const noexcept { return remarks_; }
   /// Time of the last event.
   [[nodiscard]] Time last() const noexcept { return last_; }
-  /// Whether the study asks for a break before the next presentation.
-  [[nodiscard]] bool break_due() const noexcept;
+  /// Whether the study requires a break before the next presentation.
+  [[nodiscard]] bool is_break_due() const noexcept;
 
   /// \param secret_schedule  schedule_to_json's text, stored sealed
   void open(Time at, const record::SessionOpening& opening, const std::string& secret_schedule);
   void calibrate(Time at, const std::string& text = "");
   void instruct(Time at, const std::string& text = "");
 
-  /// The plane comes on.
+  /// The plane appears.
   void present(Time at);
   /// The stylus lands on the plane. Records only the first time in a presentation.
   void contact(Time at);
@@ -142,15 +142,15 @@ class Session {
   /// A comfort stop or a device fault interrupted the presentation. The study's on_interruption
   /// decides whether it is repeated. Its evidence is discarded.
   /// \param reason  stored unencrypted: a fixed phrase that does not depend on the stimulus. After
-  ///   record::kPauseReason the same presentation comes next.
+  ///   record::kPauseReason, the presentation is repeated next.
   /// \param detail  sealed, except for the names of faults
   void interrupt(Time at, const std::string& reason,
                  const std::optional<record::InterruptionDetail>& detail = std::nullopt);
-  /// SessionRecorder::packed. May be called on another thread, except during `restore`.
-  [[nodiscard]] record::TrialEvidence packed(const record::TraceBody& body,
-                                             const record::TrialMeasures& measures,
-                                             const record::Trace& trace) const {
-    return recorder_.packed(body, measures, trace);
+  /// SessionRecorder::pack_evidence. May be called on another thread, except during `restore`.
+  [[nodiscard]] record::TrialEvidence pack_evidence(const record::TraceBody& body,
+                                                    const record::TrialMeasures& measures,
+                                                    const record::Trace& trace) const {
+    return recorder_.pack_evidence(body, measures, trace);
   }
   /// Replaces the evidence of the current presentation. It is stored together with the answer, or
   /// with a time-out without an answer.
@@ -159,8 +159,8 @@ class Session {
   void explore_again(Time at);
 
   /// Chooses an alternative, which can be changed once before `confirm` records it.
-  /// \param position  in the layout
-  /// \throws std::invalid_argument if there is no such position
+  /// \param position  position in the layout
+  /// \throws std::invalid_argument if the layout has no such position
   void choose(int position);
   /// Sets the ratings, which replace earlier ones until `confirm` records them.
   /// \throws std::invalid_argument if a value is not finite
@@ -178,7 +178,7 @@ class Session {
   // Remarks, which are accepted at any time between opening and closing.
   void note(Time at, const std::string& text);
   void deviate(Time at, const record::DeviationBody& body);
-  /// \param item  its code
+  /// \param item  the item's code
   void tick(Time at, const std::string& item);
   /// \param answers  JSON, sealed
   void question(Time at, const std::string& name, const std::string& answers);
@@ -186,32 +186,34 @@ class Session {
   void mark(Time at, const record::MarksBody& marks);
   /// Ends the session early. The current presentation remains without an answer.
   /// \param reason  free text of the experimenter, sealed; may be empty
-  /// \param code  why the program stops the session, unencrypted; else empty
+  /// \param code  the program's reason for stopping the session, unencrypted; otherwise empty
   void stop(Time at, const std::string& reason, const std::string& code = "");
-  /// \param may_name_one_key  whether the positions of the choices are randomised
-  ///   (study::Ask::has_pictures). Only then does the closing event state, unencrypted, whether 95
-  ///   % of 20 answers or more are at one position; otherwise a position would reveal the outcome.
-  void close(Time at, bool may_name_one_key = false);
+  /// \param states_one_key  whether the closing event states, unencrypted, if 95 % of 20 or more
+  ///   answers are at one position. True only if the positions of the choices are randomised
+  ///   (study::TrialQuestion::has_pictures); otherwise a position would reveal the outcome.
+  void close(Time at, bool states_one_key = false);
 
  private:
+  /// Checks that the phase accepts the input at this time, and notifies the observer.
   void require(SessionInput input, Time at) const;
   [[nodiscard]] bool is_open() const noexcept;
-  [[nodiscard]] bool is_changed() const noexcept;
+  [[nodiscard]] bool has_changed_choice() const noexcept;
   void move_to(SessionPhase phase, Time at) noexcept;
   void begin_presentation(Time at) noexcept;
   void finish_presentation(Time at, const std::optional<Answer>& answer);
   void count(const Answer& answer);
   [[nodiscard]] std::optional<int> current_trial_number() const noexcept;
   void note_force(double largest_n);
-  /// Voids the current presentation as the study's on_interruption requires; after kPauseReason the
-  /// same presentation comes next.
+  /// Voids the current presentation by the study's on_interruption; after kPauseReason, the
+  /// presentation is repeated next.
   void void_presentation(Time at, const std::string& reason);
-  /// Redraws, records and restarts a block, if the course waits for it.
+  /// Redraws, records and restarts a block, if the course requires it.
   void restart_block(Time at);
   /// The phase between trials, or after the last.
   [[nodiscard]] SessionPhase between_trials() const noexcept;
 
-  // Apply stored events, by group (session_restore.cpp). The first two return whether they did.
+  // These functions apply stored events (session_restore.cpp). Two of them return whether they
+  // handled the event.
   void apply(const record::Event& event);
   [[nodiscard]] bool apply_to_trial(const record::Event& event);
   [[nodiscard]] bool apply_to_remarks(const record::Event& event);
@@ -220,7 +222,7 @@ class Session {
   study::Course course_;
   study::TrialOptions options_;
   record::SessionRecorder recorder_;
-  SealBlock seal_block_;
+  SerialiseBlock serialise_block_;
   Observer observer_;
   SessionPhase phase_ = SessionPhase::fresh;
   SessionPhase before_pause_ = SessionPhase::ready;

@@ -13,18 +13,18 @@ class SessionClock {
 
   [[nodiscard]] virtual Time now() = 0;
   /// Advances virtual time; has no effect in real time.
-  virtual void pass(Time duration) = 0;
+  virtual void advance(Time duration) = 0;
   /// Converts a time of the servo's monotonic clock. In virtual time, returns `now`.
-  [[nodiscard]] virtual Time of(std::chrono::steady_clock::time_point) { return now(); }
+  [[nodiscard]] virtual Time time_of(std::chrono::steady_clock::time_point) { return now(); }
 };
 
-/// Advances only by `pass`.
+/// Advances only by `advance`.
 class VirtualSessionClock final : public SessionClock {
  public:
   explicit VirtualSessionClock(Time start = {}) : now_(start) {}
 
   [[nodiscard]] Time now() override { return now_; }
-  void pass(Time duration) override { now_ += duration; }
+  void advance(Time duration) override { now_ += duration; }
 
  private:
   Time now_{};
@@ -36,10 +36,10 @@ class SteadySessionClock final : public SessionClock {
   /// \param start  first value; not 0 in a resumed session
   explicit SteadySessionClock(Time start = {}) : zero_(std::chrono::steady_clock::now() - start) {}
 
-  [[nodiscard]] Time now() override { return of(std::chrono::steady_clock::now()); }
-  void pass(Time) override {}
-  [[nodiscard]] Time of(std::chrono::steady_clock::time_point when) override {
-    return when - zero_;
+  [[nodiscard]] Time now() override { return time_of(std::chrono::steady_clock::now()); }
+  void advance(Time) override {}
+  [[nodiscard]] Time time_of(std::chrono::steady_clock::time_point time) override {
+    return time - zero_;
   }
 
  private:

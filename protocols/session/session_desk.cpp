@@ -10,20 +10,20 @@ namespace touchtrial::session {
 namespace {
 
 constexpr std::chrono::milliseconds kShowInterval{250};
-/// Sleep between two polls for a reply, so as not to busy-wait.
+/// The time between two polls for a reply.
 constexpr std::chrono::milliseconds kPollPause{2};
 
 constexpr const char* kComfortStop = "comfort stop";
 constexpr const char* kStopped = "stopped";  ///< stage after a comfort stop
 
-std::string with_text(const std::string& words, const std::string& text) {
-  return text.empty() ? words : words + ": " + text;
+std::string phrase_with_text(const std::string& phrase, const std::string& text) {
+  return text.empty() ? phrase : phrase + ": " + text;
 }
 
 }  // namespace
 
-/// Also polls the experimenter's requests while the plane is on; forwards everything else to the
-/// participant.
+/// Forwards all calls to the participant, and polls the experimenter's requests while the plane is
+/// on.
 class SessionDesk::AttendedParticipant final : public Participant {
  public:
   explicit AttendedParticipant(SessionDesk& desk)
@@ -34,23 +34,23 @@ class SessionDesk::AttendedParticipant final : public Participant {
   void see_pictures(const std::vector<std::string>& labels) override {
     participant_.see_pictures(labels);
   }
-  [[nodiscard]] std::optional<StepReply> attend(const Step& step) override {
-    return participant_.attend(step);
+  [[nodiscard]] std::optional<StepReply> show_step(const Step& step) override {
+    return participant_.show_step(step);
   }
   [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override {
     return participant_.begin_exploring(plane);
   }
-  void plane_is_on(std::chrono::steady_clock::time_point began) noexcept override {
-    desk_.marks_.plane_is_on(began);
-    participant_.plane_is_on(began);
+  void note_plane_on(std::chrono::steady_clock::time_point began) noexcept override {
+    desk_.marks_.note_plane_on(began);
+    participant_.note_plane_on(began);
   }
-  void exploring(device::ServoControl& servo) override {
-    participant_.exploring(servo);
-    desk_.look(servo);
+  void while_exploring(device::ServoControl& servo) override {
+    participant_.while_exploring(servo);
+    desk_.poll_experimenter(servo);
   }
   void feel(const device::ServoSample& sample) noexcept override {
     desk_.marks_.feel(sample);
-    if (in_real_time_) desk_.hand_.feel(sample);
+    if (in_real_time_) desk_.hand_meter_.feel(sample);
     participant_.feel(sample);
   }
 
@@ -64,7 +64,7 @@ SessionDesk::SessionDesk(Session& session, const SessionParts& parts)
     : session_(session),
       parts_(parts),
       marks_(parts.explorer.in_real_time() ? parts.instruments : nullptr, session, parts.rate_hz),
-      hand_(parts.key.study.trials.validity, parts.rate_hz) {
+      hand_meter_(parts.key.study.trials.validity, parts.rate_hz) {
   status_.participant = parts.participant_name;
   status_.device = parts.device_name;
 }
@@ -78,43 +78,43 @@ SessionDesk::Time SessionDesk::now() {
   return std::max(parts_.clock.now(), session_.last());
 }
 
-SessionDesk::Time SessionDesk::when(const StepReply& reply) {
+SessionDesk::Time SessionDesk::time_of(const StepReply& reply) {
   const Time latest = now();
   if (!reply.at) return latest;
-  return std::clamp(parts_.clock.of(*reply.at), session_.last(), latest);
+  return std::clamp(parts_.clock.time_of(*reply.at), session_.last(), latest);
 }
 
 void SessionDesk::enter(const std::string& stage) {
   status_.stage = stage;
   status_.practice = false;
   status_.participant_stopped = stage == kStopped && is_participants_stop_;
-  announces_ = stage == "ready";
+  announces_next_ = stage == "ready";
   show();
 }
 
-void SessionDesk::enter_practice(const std::string& stage, int presentation, int of) {
+void SessionDesk::enter_practice(const std::string& stage, int presentation, int presentations) {
   status_.stage = stage;
   status_.practice = true;
   status_.participant_stopped = false;
   status_.trial = presentation;
-  status_.of = of;
+  status_.total = presentations;
   show();
 }
 
 void SessionDesk::show() {
   if (!status_.practice) {
     const int begun = session_.presentations_begun();
-    status_.trial = begun + (announces_ && !session_.in_presentation() ? 1 : 0);
-    status_.of = begun + session_.presentations_left() - (session_.in_presentation() ? 1 : 0);
+    status_.trial = begun + (announces_next_ && !session_.in_presentation() ? 1 : 0);
+    status_.total = begun + session_.presentations_left() - (session_.in_presentation() ? 1 : 0);
   }
   status_.elapsed = now();
-  status_.hand = hand_.levels();
-  shown_ = std::chrono::steady_clock::now();
+  status_.hand = hand_meter_.levels();
+  last_shown_ = std::chrono::steady_clock::now();
   parts_.experimenter.show(status_);
 }
 
-void SessionDesk::show_now_and_then() {
-  if (std::chrono::steady_clock::now() - shown_ >= kShowInterval) show();
+void SessionDesk::show_at_intervals() {
+  if (std::chrono::steady_clock::now() - last_shown_ >= kShowInterval) show();
 }
 
 void SessionDesk::sleep_briefly() const {
@@ -122,17 +122,17 @@ void SessionDesk::sleep_briefly() const {
 }
 
 bool SessionDesk::is_running() const noexcept {
-  return !left_ && !is_aborted_ && session_.phase() != SessionPhase::stopped &&
+  return !leave_reason_ && !is_aborted_ && session_.phase() != SessionPhase::stopped &&
          session_.phase() != SessionPhase::closed;
 }
 
-std::optional<StepReply> SessionDesk::attend(const Step& step) {
+std::optional<StepReply> SessionDesk::show_step(const Step& step) {
   while (handle()) {
-    if (std::optional<StepReply> reply = parts_.participant.attend(step)) {
-      parts_.clock.pass(reply->took);
+    if (std::optional<StepReply> reply = parts_.participant.show_step(step)) {
+      parts_.clock.advance(reply->took);
       return reply;
     }
-    show_now_and_then();
+    show_at_intervals();
   }
   return std::nullopt;
 }
@@ -140,25 +140,25 @@ std::optional<StepReply> SessionDesk::attend(const Step& step) {
 Exploration SessionDesk::explore(device::ForceSource& force, const PlaneGeometry& plane,
                                  const device::ServoOptions& options, record::Trace& trace) {
   AttendedParticipant participant(*this);
-  hand_.begin();
+  hand_meter_.begin();
   was_cut_short_ = false;
-  Exploration done = parts_.explorer.explore(force, plane, participant, options, trace);
-  hand_.begin();
-  was_cut_short_ = was_cut_short_ && done.servo.end == device::ServoEnd::hand_stopped;
-  parts_.clock.pass(done.lasted);
-  status_.rate_hz = done.servo.rate_hz;
-  status_.lateness_p99_us = done.servo.lateness.p99_us;
-  status_.overruns = done.servo.overruns;
-  return done;
+  Exploration exploration = parts_.explorer.explore(force, plane, participant, options, trace);
+  hand_meter_.begin();
+  was_cut_short_ = was_cut_short_ && exploration.servo.end == device::ServoEnd::hand_stopped;
+  parts_.clock.advance(exploration.duration);
+  status_.rate_hz = exploration.servo.rate_hz;
+  status_.lateness_p99_us = exploration.servo.lateness.p99_us;
+  status_.overruns = exploration.servo.overruns;
+  return exploration;
 }
 
 device::ServoOptions SessionDesk::servo_options() const {
   return trial_servo_options(parts_.key.study, parts_.rate_hz, parts_.limits);
 }
 
-void SessionDesk::look(device::ServoControl& servo) {
-  show_now_and_then();
-  // A request to end the session may be repeated until it is handled.
+void SessionDesk::poll_experimenter(device::ServoControl& servo) {
+  show_at_intervals();
+  // The experimenter may repeat a request to end the session until it is handled.
   while (!end_is_postponed()) {
     std::optional<Request> request = parts_.experimenter.request();
     if (!request) return;
@@ -176,7 +176,7 @@ void SessionDesk::handle_while_exploring(Request request, device::ServoControl& 
     case Request::Kind::comfort_stop:
       reason_ = kComfortStop;
       servo.comfort_stop();
-      if (request.text.empty()) return;  // done
+      if (request.text.empty()) return;  // nothing to record
       request = {Request::Kind::deviation, request.text, kComfortStopCode};
       break;
     case Request::Kind::abort:
@@ -185,8 +185,8 @@ void SessionDesk::handle_while_exploring(Request request, device::ServoControl& 
       servo.comfort_stop();
       break;
     case Request::Kind::pause:
-      // If the participant has already finished, the answer screen follows, and the pause is there.
-      was_cut_short_ = was_cut_short_ || !servo.finish_asked();
+      // If the participant has already finished, the pause begins at the answer screen.
+      was_cut_short_ = was_cut_short_ || !servo.finish_requested();
       servo.finish();
       break;
     default:
@@ -202,12 +202,12 @@ std::string SessionDesk::note_interruption(const device::ServoReport& report) {
 }
 
 /// The experimenter's reason takes precedence.
-std::string SessionDesk::count_interruption(const std::string& words) {
+std::string SessionDesk::count_interruption(const std::string& reason) {
   ++status_.interruptions;
-  parts_.devices.interrupted();
-  is_stopped_ = reason_.value_or(words) == kComfortStop;
+  parts_.devices.on_interruption();
+  is_stopped_ = reason_.value_or(reason) == kComfortStop;
   is_participants_stop_ = is_stopped_ && !reason_;
-  return std::exchange(reason_, std::nullopt).value_or(words);
+  return std::exchange(reason_, std::nullopt).value_or(reason);
 }
 
 std::optional<ExperimenterRequest> SessionDesk::next_request() {
@@ -219,7 +219,7 @@ std::optional<ExperimenterRequest> SessionDesk::next_request() {
 
 bool SessionDesk::handle() {
   if (!is_running()) return false;
-  if (device::StopOnSignals::asked()) return leave(device::StopOnSignals::message());
+  if (device::StopOnSignals::stop_requested()) return leave(device::StopOnSignals::message());
   while (const std::optional<Request> request = next_request()) {
     if (!handle(*request)) return false;
   }
@@ -251,7 +251,7 @@ bool SessionDesk::handle(const Request& request) {
 }
 
 bool SessionDesk::handle_pause(const Request& request) {
-  // Between two planes of a presentation no force is on, but the presentation is under way.
+  // Between two planes, no force is on, but the presentation has begun.
   const bool interrupts = session_.phase() == SessionPhase::exploring;
   if (interrupts) session_.interrupt(now(), record::kPauseReason);
   if (!session_.accepts(SessionInput::pause)) return true;
@@ -260,7 +260,7 @@ bool SessionDesk::handle_pause(const Request& request) {
   const std::string stage = std::exchange(status_.stage, "paused");
   show();
   for (;;) {
-    if (device::StopOnSignals::asked()) return leave(device::StopOnSignals::message());
+    if (device::StopOnSignals::stop_requested()) return leave(device::StopOnSignals::message());
     while (const std::optional<Request> next = next_request()) {
       if (next->kind == Request::Kind::resume) {
         session_.resume(now());
@@ -271,8 +271,8 @@ bool SessionDesk::handle_pause(const Request& request) {
       if (!handle(*next)) return false;
       if (session_.phase() != SessionPhase::paused) return true;
     }
-    static_cast<void>(parts_.participant.attend(PauseStep{}));
-    show_now_and_then();
+    static_cast<void>(parts_.participant.show_step(PauseStep{}));
+    show_at_intervals();
     sleep_briefly();
   }
 }
@@ -306,26 +306,26 @@ bool SessionDesk::handle_comfort_stop(const Request& request) {
   if (interrupts) return false;
   is_stopped_ = true;
   is_participants_stop_ = false;
-  parts_.devices.interrupted();
+  parts_.devices.on_interruption();
   return session_.phase() != SessionPhase::ready;
 }
 
 bool SessionDesk::handle_abort(const Request& request) {
-  // A session whose trials are done stays complete.
+  // If all trials are done, the session stays complete.
   const bool is_done = session_.presentations_left() == 0;
   if (is_done && session_.phase() == SessionPhase::paused) session_.resume(now());
   if (session_.accepts(SessionInput::stop)) {
     session_.stop(now(), request.text);
   } else {
-    session_.note(now(), with_text("aborted", request.text));
+    session_.note(now(), phrase_with_text("aborted", request.text));
     is_aborted_ = true;
   }
   return false;
 }
 
-bool SessionDesk::leave(const std::string& why) {
-  if (session_.accepts(SessionInput::note)) session_.note(now(), with_text("left", why));
-  left_ = why;
+bool SessionDesk::leave(const std::string& reason) {
+  if (session_.accepts(SessionInput::note)) session_.note(now(), phrase_with_text("left", reason));
+  leave_reason_ = reason;
   return false;
 }
 
@@ -348,7 +348,8 @@ bool SessionDesk::await_device() {
 bool SessionDesk::wait_for_consent() {
   if (!is_stopped_) return true;
   enter(kStopped);
-  if (!attend(NoticeStep{NoticeStep::What::stopped, session_.presentations_begun()})) return false;
+  if (!show_step(NoticeStep{NoticeStep::What::stopped, session_.presentations_begun()}))
+    return false;
   is_stopped_ = false;
   return true;
 }
@@ -361,13 +362,13 @@ Step SessionDesk::waiting_page() const {
 bool SessionDesk::wait_for_device(SupplyState device) {
   while (device == SupplyState::not_yet) {
     if (!handle()) return false;
-    static_cast<void>(parts_.participant.attend(waiting_page()));
-    show_now_and_then();
+    static_cast<void>(parts_.participant.show_step(waiting_page()));
+    show_at_intervals();
     sleep_briefly();
     device = parts_.devices.make_ready();
   }
   if (device == SupplyState::ready) return true;
-  if (device::StopOnSignals::asked()) return leave(device::StopOnSignals::message());
+  if (device::StopOnSignals::stop_requested()) return leave(device::StopOnSignals::message());
   // The experimenter may have given a reason.
   if (!handle()) return false;
   session_.stop(now(), "", "stopped while waiting for the device");

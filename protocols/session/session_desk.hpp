@@ -1,5 +1,5 @@
 /// \file The blocking operations of a session: showing steps until the participant replies, running
-/// explorations, and waiting for the device, while the experimenter's requests are handled. It does
+/// explorations, and waiting for the device, while handling the experimenter's requests. It does
 /// not decide on trials or stages. Private to protocols/session.
 #pragma once
 
@@ -28,23 +28,23 @@ class SessionDesk {
   /// The current time; never before the session's last event.
   [[nodiscard]] Time now();
   /// The time of a reply; neither in the future nor before the session's last event.
-  [[nodiscard]] Time when(const StepReply& reply);
+  [[nodiscard]] Time time_of(const StepReply& reply);
 
   /// Shows a new stage to the experimenter.
   void enter(const std::string& stage);
-  /// The same in practice.
-  /// \param presentation  of the round, from 1; 0: none yet
-  void enter_practice(const std::string& stage, int presentation, int of);
+  /// Shows a stage of practice to the experimenter.
+  /// \param presentation  number in the round, from 1; 0: none yet
+  void enter_practice(const std::string& stage, int presentation, int presentations);
   /// Shows a step until there is a reply, and advances the clock.
   /// \return empty if the step was aborted: the session was stopped or left, or the current
   ///   presentation was interrupted
-  [[nodiscard]] std::optional<StepReply> attend(const Step& step);
+  [[nodiscard]] std::optional<StepReply> show_step(const Step& step);
   /// Runs an exploration, and advances the clock. In real time, requests of the experimenter end
   /// the exploration or are handled after it.
-  /// \param trace  gets every sample
+  /// \param trace  receives every sample
   [[nodiscard]] Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                     const device::ServoOptions& options, record::Trace& trace);
-  /// Whether the last exploration was ended by the experimenter's pause, not by the participant.
+  /// Whether the experimenter's pause ended the last exploration, not the participant.
   [[nodiscard]] bool was_cut_short() const noexcept { return was_cut_short_; }
   /// The number of pauses so far in this run.
   [[nodiscard]] int pauses() const noexcept { return pauses_; }
@@ -61,7 +61,9 @@ class SessionDesk {
   /// Whether the session has been neither stopped, aborted, left nor closed.
   [[nodiscard]] bool is_running() const noexcept;
   /// Why the session was left open; empty if it was not.
-  [[nodiscard]] const std::optional<std::string>& left() const noexcept { return left_; }
+  [[nodiscard]] const std::optional<std::string>& leave_reason() const noexcept {
+    return leave_reason_;
+  }
   /// Marks the session's start and end in the other instruments' records.
   void mark_session_start() { marks_.begin(); }
   void mark_session_end() { marks_.end(); }
@@ -77,7 +79,7 @@ class SessionDesk {
   using Request = ExperimenterRequest;
 
   /// Called repeatedly in real time while the plane is on.
-  void look(device::ServoControl& servo);
+  void poll_experimenter(device::ServoControl& servo);
   [[nodiscard]] bool end_is_postponed() const noexcept;
   /// Ends the exploration if the request requires it. Postpones events that must be recorded.
   void handle_while_exploring(Request request, device::ServoControl& servo);
@@ -87,33 +89,34 @@ class SessionDesk {
   [[nodiscard]] bool handle_delay(const Request& request);
   [[nodiscard]] bool handle_comfort_stop(const Request& request);
   [[nodiscard]] bool handle_abort(const Request& request);
-  [[nodiscard]] bool leave(const std::string& why);
+  [[nodiscard]] bool leave(const std::string& reason);
   [[nodiscard]] bool wait_for_device(SupplyState device);
-  /// What the participant sees while the device is not ready.
+  /// The participant's page while the device is not ready.
   [[nodiscard]] Step waiting_page() const;
   /// After a comfort stop, shows the participant a page until they continue.
   /// \return whether they continue; true immediately if there was no stop
   [[nodiscard]] bool wait_for_consent();
-  [[nodiscard]] std::string count_interruption(const std::string& words);
+  [[nodiscard]] std::string count_interruption(const std::string& reason);
+  /// Shows the session's state to the experimenter.
   void show();
-  void show_now_and_then();
+  void show_at_intervals();
   void sleep_briefly() const;
 
   Session& session_;
   const SessionParts& parts_;
   SessionMarks marks_;
-  std::optional<std::string> left_;
+  std::optional<std::string> leave_reason_;
   bool is_aborted_ = false;  ///< aborted after the last trial, so that the session stays complete
   SessionStatus status_;
-  HandMeter hand_;
+  HandMeter hand_meter_;
   std::deque<Request> postponed_;
-  std::optional<std::string> reason_;  ///< of an interruption requested by the experimenter
+  std::optional<std::string> reason_;  ///< the experimenter's reason for an interruption
   bool is_stopped_ = false;            ///< a comfort stop is pending
   bool is_participants_stop_ = false;  ///< whether the participant requested the comfort stop
-  bool announces_ = false;             ///< whether the next presentation is announced
+  bool announces_next_ = false;        ///< whether the next presentation is announced
   bool was_cut_short_ = false;
   int pauses_ = 0;
-  std::chrono::steady_clock::time_point shown_{};
+  std::chrono::steady_clock::time_point last_shown_{};
 };
 
 }  // namespace touchtrial::session

@@ -1,4 +1,4 @@
-// Restores a session from its events in a database, one by one.
+// Restores a session from its stored events.
 #include "core/errors.hpp"
 #include "protocols/session/session.hpp"
 #include "record/payload_json.hpp"
@@ -11,10 +11,10 @@ namespace {
 
 using Phase = SessionPhase;
 
-[[noreturn]] void refuse(const record::Event& event, const std::string& why) {
+[[noreturn]] void refuse(const record::Event& event, const std::string& reason) {
   throw StoreError("session " + std::to_string(event.session) + ", event " +
                    std::to_string(event.sequence) + " ('" + std::string(name_of(event.kind)) +
-                   "'): " + why + "; run `touchtrial verify`");
+                   "'): " + reason + "; run `touchtrial verify`");
 }
 
 }  // namespace
@@ -76,11 +76,11 @@ bool Session::apply_to_trial(const record::Event& event) {
     case record::EventKind::answered: {
       require_current();
       const std::optional<Answer> answer = record::from_json<record::AnswerBody>(event.body).answer;
-      if (!answer) refuse(event, "has no decrypted answer");
-      const auto* const chosen = std::get_if<Chosen>(&*answer);
-      if (chosen != nullptr &&
-          (chosen->position < 0 || chosen->position >= static_cast<int>(layout().size()))) {
-        refuse(event, "chooses position " + std::to_string(chosen->position) +
+      if (!answer) refuse(event, "its answer is not decrypted");
+      const auto* const choice = std::get_if<ChoiceAnswer>(&*answer);
+      if (choice != nullptr &&
+          (choice->position < 0 || choice->position >= static_cast<int>(layout().size()))) {
+        refuse(event, "chooses position " + std::to_string(choice->position) +
                           ", which the layout does not have");
       }
       count(*answer);

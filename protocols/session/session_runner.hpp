@@ -1,5 +1,5 @@
-/// \file A whole session, in virtual or real time: a state machine, a participant, an experimenter
-/// and a device. The caller provides what differs between virtual and real time: the clock, the
+/// \file A complete session, in virtual or real time: a state machine, a participant, an
+/// experimenter and a device. For virtual or real time, the caller provides the clock, the
 /// explorer, and the device supply.
 #pragma once
 
@@ -40,7 +40,7 @@ struct SessionTally {
 
 class Instruments;
 
-/// Everything that a session needs to run. All of it must outlive the run.
+/// The parts of a session, which must outlive the run.
 struct SessionParts {
   const study::StudyCodes& key;
   const StimulusSource& source;
@@ -56,25 +56,25 @@ struct SessionParts {
   std::function<study::Practice(int round)> practice{};
   std::string participant_name{};      ///< for the experimenter
   std::string device_name{};           ///< for the experimenter
-  device::LabLimits limits{};          ///< of the laboratory, in addition to the study's
+  device::LabLimits limits{};          ///< the laboratory's, in addition to the study's
   Instruments* instruments = nullptr;  ///< receives marks of the session's events in real time
 };
 
 /// Runs an opened or resumed session until it is closed or left: the remaining opening stages, the
 /// trials, and the closing questions.
 ///
-/// Unencrypted events do not depend on what is presented, with two exceptions: whether the
-/// exploration was long enough and the hand within its windows (record::HandWindows), and the
-/// summary at a session's end (record::ClosedBody). An answer is acknowledged once it is durable.
+/// Unencrypted events do not depend on stimuli, with two exceptions: whether the exploration was
+/// long enough and the hand within its windows (record::HandWindows), and the summary at a
+/// session's end (record::ClosedBody). An answer is acknowledged once it is durable.
 ///
 /// A presentation that ends in a fault or a comfort stop is recorded as interrupted, and the
 /// study's settings determine whether it is repeated; the session is paused until the device supply
 /// is ready again. The session is stopped when the supply gives up, the experimenter aborts it, or
 /// interruptions outnumber its trials. It is left open when the experimenter leaves it, or a signal
-/// requests the end of the program (StopOnSignals::asked). No force is on when this returns or
-/// throws.
+/// requests the end of the program (StopOnSignals::stop_requested). No force is on when this
+/// returns or throws.
 /// \throws StoreError if an event could not be stored
-/// \throws what participant, experimenter and supply throw
+/// \throws exceptions of participant, experimenter and supply
 SessionTally run_session(Session& session, const SessionParts& parts);
 
 /// Runs a session in virtual time, which starts at 0.

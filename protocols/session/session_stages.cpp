@@ -16,18 +16,18 @@ namespace {
 constexpr std::chrono::seconds kCalibration{30};
 constexpr std::chrono::seconds kInstruction{120};
 
-/// Shows a step again whenever it is aborted.
+/// Shows a step until there is a reply, even if it is aborted.
 /// \return empty if the session ended
-std::optional<StepReply> attend_until_reply(SessionDesk& desk, const Step& step) {
+std::optional<StepReply> show_until_reply(SessionDesk& desk, const Step& step) {
   while (desk.is_running()) {
-    if (std::optional<StepReply> reply = desk.attend(step)) return reply;
+    if (std::optional<StepReply> reply = desk.show_step(step)) return reply;
   }
   return std::nullopt;
 }
 
 // ---- Day sheet and device
 
-std::vector<DaySheetItem> open_items(const SessionDesk& desk, const SessionRemarks& remarks) {
+std::vector<DaySheetItem> remaining_items(const SessionDesk& desk, const SessionRemarks& remarks) {
   std::vector<DaySheetItem> items;
   for (const DaySheetItem& item : desk.parts().texts.day_sheet) {
     if (!remarks.ticked.contains(item.code) && !remarks.deviations.contains(item.code)) {
@@ -48,8 +48,8 @@ void record_ticks(SessionDesk& desk, const std::vector<DaySheetItem>& items,
   }
 }
 
-bool go_through_day_sheet(SessionDesk& desk) {
-  const std::vector<DaySheetItem> items = open_items(desk, desk.session().remarks());
+bool run_day_sheet(SessionDesk& desk) {
+  const std::vector<DaySheetItem> items = remaining_items(desk, desk.session().remarks());
   if (items.empty()) return true;
   desk.enter("day sheet");
   while (desk.handle()) {
@@ -62,11 +62,11 @@ bool go_through_day_sheet(SessionDesk& desk) {
 }
 
 bool calibrate(SessionDesk& desk) {
-  if (!go_through_day_sheet(desk)) return false;
+  if (!run_day_sheet(desk)) return false;
   while (!desk.await_device()) {
     if (!desk.is_running()) return false;
   }
-  desk.parts().clock.pass(kCalibration);
+  desk.parts().clock.advance(kCalibration);
   desk.session().calibrate(desk.now());
   return true;
 }
@@ -76,8 +76,8 @@ bool calibrate(SessionDesk& desk) {
 bool instruct(SessionDesk& desk) {
   desk.enter("instructions");
   const std::vector<std::string>& pages = desk.parts().texts.instructions;
-  if (!pages.empty() && !attend_until_reply(desk, InstructionStep{pages})) return false;
-  desk.parts().clock.pass(kInstruction);
+  if (!pages.empty() && !show_until_reply(desk, InstructionStep{pages})) return false;
+  desk.parts().clock.advance(kInstruction);
   desk.session().instruct(desk.now());
   return true;
 }
@@ -107,13 +107,14 @@ std::string answers_to_json(const study::Questionnaire& questionnaire,
 }
 
 /// \return whether the session continues
-bool ask(SessionDesk& desk, const std::optional<study::Questionnaire>& questionnaire) {
+bool ask_questionnaire(SessionDesk& desk,
+                       const std::optional<study::Questionnaire>& questionnaire) {
   if (!questionnaire) return true;
   if (desk.session().remarks().questionnaires.contains(questionnaire->name)) return true;
   desk.enter("questions");
-  const std::optional<StepReply> reply = attend_until_reply(desk, QuestionStep{&*questionnaire});
+  const std::optional<StepReply> reply = show_until_reply(desk, QuestionStep{&*questionnaire});
   if (!reply) return false;
-  desk.session().question(desk.when(*reply), questionnaire->name,
+  desk.session().question(desk.time_of(*reply), questionnaire->name,
                           answers_to_json(*questionnaire, reply->answers));
   return true;
 }
@@ -122,9 +123,9 @@ bool ask(SessionDesk& desk, const std::optional<study::Questionnaire>& questionn
 
 /// The progress of practice.
 struct PracticeProgress {
-  int round = 1;    ///< the current or the next one
-  int done = 0;     ///< presentations of that round
-  int correct = 0;  ///< of these
+  int round = 1;    ///< the current or the next round
+  int done = 0;     ///< presentations in this round
+  int correct = 0;  ///< correct answers in this round
   bool passed = false;
 };
 
@@ -133,25 +134,25 @@ struct PracticeProgress {
 PracticeProgress progress_of(const std::vector<record::PracticeBody>& practised,
                              const study::Practice& plan) {
   PracticeProgress progress;
-  for (const record::PracticeBody& one : practised) {
-    if (one.round > progress.round) progress = {.round = one.round};
+  for (const record::PracticeBody& presentation : practised) {
+    if (presentation.round > progress.round) progress = {.round = presentation.round};
     ++progress.done;
-    progress.correct += one.correct.value_or(false) ? 1 : 0;
+    progress.correct += presentation.correct.value_or(false) ? 1 : 0;
   }
-  const bool is_whole = progress.done >= std::ssize(plan.trials);
-  progress.passed = plan.criterion > 0 ? progress.correct >= plan.criterion : is_whole;
-  if (!progress.passed && is_whole) progress = {.round = progress.round + 1};
+  const bool is_round_complete = progress.done >= std::ssize(plan.trials);
+  progress.passed = plan.criterion > 0 ? progress.correct >= plan.criterion : is_round_complete;
+  if (!progress.passed && is_round_complete) progress = {.round = progress.round + 1};
   return progress;
 }
 
-/// Practice with feedback, until enough answers of a round are correct. Continues after recorded
-/// practice, which may be from an earlier run of the program.
+/// Runs practice with feedback, until enough answers of a round are correct. Continues after
+/// recorded practice, which may be from an earlier run of the program.
 class PracticeRun {
  public:
   explicit PracticeRun(SessionDesk& desk)
       : desk_(desk),
         plan_(desk.parts().practice(1)),
-        a_round_(static_cast<int>(plan_.trials.size())) {}
+        trials_per_round_(static_cast<int>(plan_.trials.size())) {}
 
   /// \return whether the session continues
   [[nodiscard]] bool run();
@@ -161,96 +162,101 @@ class PracticeRun {
     return progress_of(desk_.session().remarks().practice, plan_);
   }
   [[nodiscard]] bool run_round(int round);
-  /// \return empty if the presentation was interrupted, and must be repeated if the session continues
-  [[nodiscard]] std::optional<record::PracticeBody> present(const PracticeProgress& at,
+  /// \return empty if the presentation was interrupted, and must be repeated if the session
+  ///   continues
+  [[nodiscard]] std::optional<record::PracticeBody> present(const PracticeProgress& state,
                                                             const study::Trial& trial);
-  /// \return how the exploration ended; empty if it was interrupted
+  /// \return the end of the exploration; empty if it was interrupted
   [[nodiscard]] std::optional<device::ServoEnd> explore(const study::Trial& trial);
 
   SessionDesk& desk_;
   study::Practice plan_;
   record::Trace trace_;
-  int a_round_;
+  int trials_per_round_;
   int not_explored_ = 0;  ///< trials with a plane that was not explored as instructed
 };
 
 bool PracticeRun::run() {
-  for (PracticeProgress at = progress(); !at.passed; at = progress()) {
-    if (at.round > plan_.rounds || not_explored_ > a_round_) {
+  for (PracticeProgress state = progress(); !state.passed; state = progress()) {
+    if (state.round > plan_.rounds || not_explored_ > trials_per_round_) {
       if (!desk_.session().remarks().deviations.contains("practice-not-passed")) {
         desk_.session().deviate(desk_.now(), {"practice-not-passed", ""});
       }
       return true;
     }
-    if (!run_round(at.round)) return false;
+    if (!run_round(state.round)) return false;
   }
   return true;
 }
 
 bool PracticeRun::run_round(int round) {
-  const study::Practice shown = desk_.parts().practice(round);
-  desk_.parts().participant.see_pictures(shown.labels);
-  desk_.enter_practice("practice", 0, a_round_);
-  if (!desk_.attend(PracticeStep{round})) return desk_.is_running();
-  for (PracticeProgress at = progress(); at.round == round && !at.passed; at = progress()) {
-    if (not_explored_ > a_round_) return true;
+  const study::Practice practice = desk_.parts().practice(round);
+  desk_.parts().participant.see_pictures(practice.labels);
+  desk_.enter_practice("practice", 0, trials_per_round_);
+  if (!desk_.show_step(PracticeStep{round})) return desk_.is_running();
+  for (PracticeProgress state = progress(); state.round == round && !state.passed;
+       state = progress()) {
+    if (not_explored_ > trials_per_round_) return true;
     if (!desk_.await_device()) {
       if (!desk_.is_running()) return false;
       continue;
     }
     const study::Trial& trial =
-        shown.trials[static_cast<std::size_t>(at.done) % shown.trials.size()];
-    const std::optional<record::PracticeBody> done = present(at, trial);
+        practice.trials[static_cast<std::size_t>(state.done) % practice.trials.size()];
+    const std::optional<record::PracticeBody> presented = present(state, trial);
     if (!desk_.is_running()) return false;
-    if (!done) continue;
-    desk_.session().practise(desk_.now(), *done);
+    if (!presented) continue;
+    desk_.session().practise(desk_.now(), *presented);
     if (!trial.right) continue;
-    desk_.enter_practice("feedback", done->presentation, a_round_);
-    const int answered = position_of(done->answer).value_or(0);
-    if (!desk_.attend(FeedbackStep{answered, *trial.right}) && !desk_.is_running()) return false;
+    desk_.enter_practice("feedback", presented->presentation, trials_per_round_);
+    const int answered_position = position_of(presented->answer).value_or(0);
+    if (!desk_.show_step(FeedbackStep{answered_position, *trial.right}) && !desk_.is_running())
+      return false;
   }
   return true;
 }
 
-std::optional<record::PracticeBody> PracticeRun::present(const PracticeProgress& at,
+std::optional<record::PracticeBody> PracticeRun::present(const PracticeProgress& state,
                                                          const study::Trial& trial) {
-  const int number = at.done + 1;
-  desk_.enter_practice("ready", number, a_round_);
-  if (!desk_.attend(ReadyStep{number, a_round_, true})) return std::nullopt;
-  desk_.enter_practice("exploring", number, a_round_);
+  const int number = state.done + 1;
+  desk_.enter_practice("ready", number, trials_per_round_);
+  if (!desk_.show_step(ReadyStep{number, trials_per_round_, true})) return std::nullopt;
+  desk_.enter_practice("exploring", number, trials_per_round_);
   const std::optional<device::ServoEnd> end = explore(trial);
   if (!end) return std::nullopt;
-  desk_.enter_practice("answering", number, a_round_);
+  desk_.enter_practice("answering", number, trials_per_round_);
   const study::Study& study = desk_.parts().key.study;
   const std::optional<StepReply> reply =
-      desk_.attend(AnswerStep{.trial = number,
-                              .of = a_round_,
-                              .practice = true,
-                              .time_is_up = *end == device::ServoEnd::time_limit,
-                              .question = study.task->ask(study, trial.place).question,
-                              .picture = study::picture_of(study, trial),
-                              .sight = study.session.sight});
+      desk_.show_step(AnswerStep{.trial = number,
+                                 .total = trials_per_round_,
+                                 .practice = true,
+                                 .time_is_up = *end == device::ServoEnd::time_limit,
+                                 .question = study.task->ask(study, trial.place).question,
+                                 .picture = study::picture_of(study, trial),
+                                 .sight = study.session.sight});
   if (!reply) return std::nullopt;
-  record::PracticeBody body{at.round, number, reply->answer, std::nullopt};
+  record::PracticeBody body{state.round, number, reply->answer, std::nullopt};
   if (trial.right) body.correct = position_of(reply->answer) == trial.right;
   return body;
 }
 
 std::optional<device::ServoEnd> PracticeRun::explore(const study::Trial& trial) {
-  device::ServoReport last;
-  const PlaneListener listener{[this] { return &trace_; },
-                               [&last](const Exploration& done) { last = done.servo; }};
+  device::ServoReport last_report;
+  const PlaneListener listener{
+      [this] { return &trace_; },
+      [&last_report](const Exploration& exploration) { last_report = exploration.servo; }};
   switch (run_planes(desk_, trial, desk_.servo_options(), listener)) {
     case PlanesEnd::explored:
     case PlanesEnd::time_is_up:
-      return last.end;
+      return last_report.end;
     case PlanesEnd::interrupted:
-      desk_.session().note(desk_.now(), "practice interrupted: " + desk_.note_interruption(last));
+      desk_.session().note(desk_.now(),
+                           "practice interrupted: " + desk_.note_interruption(last_report));
       return std::nullopt;
     case PlanesEnd::not_explored:
       ++not_explored_;
-      desk_.enter_practice("not explored", trial.place.trial, a_round_);
-      static_cast<void>(desk_.attend(
+      desk_.enter_practice("not explored", trial.place.trial, trials_per_round_);
+      static_cast<void>(desk_.show_step(
           NoticeStep{NoticeStep::What::not_explored, desk_.session().presentations_begun()}));
       return std::nullopt;
     case PlanesEnd::paused:
@@ -263,13 +269,14 @@ std::optional<device::ServoEnd> PracticeRun::explore(const study::Trial& trial) 
 /// \return whether the session continues
 bool practise(SessionDesk& desk) {
   const auto& practice = desk.parts().practice;
-  const bool wanted = practice && !practice(1).trials.empty();
-  if (!wanted || desk.session().presentations_begun() > 0) return true;
-  const std::size_t before = desk.session().remarks().practice.size();
+  const bool has_practice = practice && !practice(1).trials.empty();
+  if (!has_practice || desk.session().presentations_begun() > 0) return true;
+  const std::size_t recorded_count = desk.session().remarks().practice.size();
   if (!PracticeRun(desk).run()) return false;
-  if (desk.session().remarks().practice.size() == before) return true;  // practice was already over
+  if (desk.session().remarks().practice.size() == recorded_count)
+    return true;  // practice was already over
   desk.enter("practice is over");
-  return attend_until_reply(desk, NoticeStep{NoticeStep::What::practice_over}).has_value();
+  return show_until_reply(desk, NoticeStep{NoticeStep::What::practice_over}).has_value();
 }
 
 void show_pictures(SessionDesk& desk) {
@@ -289,7 +296,7 @@ bool run_opening_stages(SessionDesk& desk) {
   if (session.phase() == SessionPhase::opened && !calibrate(desk)) return false;
   if (session.phase() == SessionPhase::calibrated && !instruct(desk)) return false;
   if (session.phase() == SessionPhase::ready) {
-    if (!ask(desk, desk.parts().texts.handedness) || !practise(desk)) return false;
+    if (!ask_questionnaire(desk, desk.parts().texts.handedness) || !practise(desk)) return false;
     show_pictures(desk);
   }
   return desk.is_running();
@@ -297,7 +304,7 @@ bool run_opening_stages(SessionDesk& desk) {
 
 void ask_closing_questions(SessionDesk& desk) {
   // If this is interrupted, the questions are skipped, because the trials are already stored.
-  static_cast<void>(ask(desk, desk.parts().texts.closing));
+  static_cast<void>(ask_questionnaire(desk, desk.parts().texts.closing));
 }
 
 }  // namespace touchtrial::session

@@ -11,9 +11,9 @@
 
 namespace touchtrial::session {
 
-/// The texts of one session, in its language. The session skips the stages of empty members.
+/// The texts of one session, in its language. Stages with empty texts are skipped.
 struct SessionTexts {
-  std::vector<std::string> instructions;           ///< pages
+  std::vector<std::string> instructions;           ///< pages, in order
   std::optional<study::Questionnaire> handedness;  ///< asked after the instructions
   std::optional<study::Questionnaire> closing;     ///< asked after the last trial
   std::vector<DaySheetItem> day_sheet;             ///< for the experimenter

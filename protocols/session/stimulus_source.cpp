@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMinPage = 4096;
 
-void touch(std::span<const std::byte> bytes) noexcept {
+void read_pages(std::span<const std::byte> bytes) noexcept {
   const auto read = [](const std::byte& byte) {
     static_cast<void>(*static_cast<const volatile std::byte*>(&byte));
   };
@@ -31,15 +31,15 @@ StimulusSource::StimulusSource(const engine::Pack& pack, const engine::Rendering
     fields_.push_back(pack.map(entry.code));
     const engine::FieldView view = fields_.back().view();
     if (view.model != rendering.model) {
-      throw FileError(one_line(folder_ + ": field " + entry.code +
-                               " has another rendering model than the study; run `touchtrial "
-                               "prepare`"));
+      throw FileError(
+          one_line(folder_ + ": field " + entry.code +
+                   " has a rendering model that differs from the study's; run `touchtrial "
+                   "prepare`"));
     }
     stimuli_.emplace(entry.code, Stimulus{view, entry.gains,
                                           engine::RenderingModel(view, rendering, entry.gains)});
-    // The blank plane is made from a field, so that its computation takes as long as that of
-    // others.
-    if (!flat_) flat_.emplace(view, rendering, engine::Gains{});
+    // The blank plane is made from a field, so that its computation takes as long as a texture's.
+    if (!blank_plane_) blank_plane_.emplace(view, rendering, engine::Gains{});
     if (stimuli_.size() == 1) plane_ = view.geometry;
     plane_.height_px = std::min(plane_.height_px, view.geometry.height_px);
     plane_.width_px = std::min(plane_.width_px, view.geometry.width_px);
@@ -51,7 +51,7 @@ StimulusSource::StimulusSource(const engine::Pack& pack, const engine::Rendering
 
 void StimulusSource::fetch() const noexcept {
   for (const engine::MappedField& field : fields_) {
-    touch(std::as_bytes(field.view().heights));
+    read_pages(std::as_bytes(field.view().heights));
   }
 }
 
@@ -77,40 +77,41 @@ StimulusSource::Mix StimulusSource::mix_of(const study::Plane& plane) noexcept {
 StimulusSource::StimulusSource(const engine::Pack& pack, const study::StudyCodes& codes)
     : StimulusSource(pack, codes.study.rendering) {
   for (const study::KeyedStimulus& keyed : codes.fields()) static_cast<void>(stimulus(keyed.code));
-  // The blank plane always comes from the same field, that with the first code.
+  // The blank plane always uses the field whose code sorts first.
   const auto first = std::ranges::min_element(codes.stimuli, {}, &study::KeyedStimulus::code);
-  flat_.emplace(stimulus(first->code).field, rendering_, engine::Gains{});
+  blank_plane_.emplace(stimulus(first->code).field, rendering_, engine::Gains{});
   const study::Fields fields = codes.study.task->fields(codes.study);
-  if (!fields.levelled) return;
+  if (!fields.has_equal_heights) return;
   for (const auto& [code, index] : codes.fields()) {
-    const Mix alone{index, index, 0.0};
-    mixes_.emplace(alone, applied(alone, codes));
+    const Mix unmixed{index, index, 0.0};
+    mixes_.emplace(unmixed, apply_gains(unmixed, codes));
   }
   for (const study::Plane& plane : fields.mixtures) {
     const Mix mix = mix_of(plane);
-    if (!mixes_.contains(mix)) mixes_.emplace(mix, applied(mix, codes));
+    if (!mixes_.contains(mix)) mixes_.emplace(mix, apply_gains(mix, codes));
   }
 }
 
-StimulusSource::Applied StimulusSource::applied(const Mix& mix,
-                                                const study::StudyCodes& codes) const {
-  const Stimulus& one = stimulus(codes.code_of(mix.one));
-  const std::array<engine::FieldWithGains, 1> alone = {{{one.field, one.gains}}};
-  if (mix.share == 0.0) return {engine::applied_sum(alone), 1.0};
-  const Stimulus& other = stimulus(codes.code_of(mix.other));
+StimulusSource::AppliedField StimulusSource::apply_gains(const Mix& mix,
+                                                         const study::StudyCodes& codes) const {
+  const Stimulus& first = stimulus(codes.code_of(mix.first));
+  const std::array<engine::FieldWithGains, 1> unmixed = {{{first.field, first.gains}}};
+  if (mix.share == 0.0) return {engine::sum_with_gains(unmixed), 1.0};
+  const Stimulus& second = stimulus(codes.code_of(mix.second));
   const std::array<engine::FieldWithGains, 2> parts = {
-      engine::FieldWithGains{one.field, engine::scaled(one.gains, 1.0 - mix.share)},
-      engine::FieldWithGains{other.field, engine::scaled(other.gains, mix.share)}};
-  Applied sum{engine::applied_sum(parts), 1.0};
+      engine::FieldWithGains{first.field, engine::scaled(first.gains, 1.0 - mix.share)},
+      engine::FieldWithGains{second.field, engine::scaled(second.gains, mix.share)}};
+  AppliedField sum{engine::sum_with_gains(parts), 1.0};
   if (rendering_.equalise != engine::Equalise::rms) return sum;
-  // Scaled to the rms force of the first field alone, which all stimuli of the study have.
-  const double wanted = engine::lateral_rms(engine::applied_sum(alone).view());
+  // The sum is scaled to the rms force of the first field, which is the same for all stimuli of the
+  // study.
+  const double target = engine::lateral_rms(engine::sum_with_gains(unmixed).view());
   const double mixed = engine::lateral_rms(sum.field.view());
-  sum.factor = mixed > 0.0 ? wanted / mixed : 1.0;
+  sum.factor = mixed > 0.0 ? target / mixed : 1.0;
   return sum;
 }
 
-engine::RenderingModel StimulusSource::levelled(const study::Plane& plane) const {
+engine::RenderingModel StimulusSource::equal_height_model(const study::Plane& plane) const {
   const auto found = mixes_.find(mix_of(plane));
   if (found == mixes_.end()) {
     throw std::logic_error("StimulusSource: the plane is not in Fields::mixtures of the task");
@@ -124,11 +125,11 @@ engine::RenderingModel StimulusSource::levelled(const study::Plane& plane) const
 
 engine::RenderingModel StimulusSource::plane_of(const study::Plane& plane,
                                                 const study::StudyCodes& codes) const {
-  if (!mixes_.empty()) return levelled(plane);
+  if (!mixes_.empty()) return equal_height_model(plane);
   if (plane.mix || plane.pitch != 1.0) {
-    throw std::logic_error("StimulusSource: planes that are mixed or stretched must be levelled");
+    throw std::logic_error("StimulusSource: mixed or stretched planes must have equal heights");
   }
-  if (plane.blank) return flat();
+  if (plane.blank) return blank_plane();
   return model(codes.code_of(plane.field), plane.gain_db);
 }
 

@@ -1,4 +1,4 @@
-/// \file The force models of a pack, by opaque code. Trials know stimuli only by these codes.
+/// \file The force models of a pack, by opaque code. Trials identify stimuli only by these codes.
 #pragma once
 
 #include "engine/pack/pack.hpp"
@@ -22,7 +22,7 @@ class StimulusSource {
   /// \throws FileError if a field is missing, truncated, malformed or of another rendering model,
   ///   or the pack is empty
   StimulusSource(const engine::Pack& pack, const engine::RenderingOptions& rendering);
-  /// Overload for sessions, whose planes may be levelled and mixed.
+  /// Overload for sessions, whose planes may have equal heights and be mixed.
   /// \throws FileError also if the pack lacks one of the codes' fields
   StimulusSource(const engine::Pack& pack, const study::StudyCodes& codes);
 
@@ -30,25 +30,25 @@ class StimulusSource {
   /// \throws FileError if the pack has no such code
   [[nodiscard]] const engine::RenderingModel& model(const std::string& code) const;
 
-  /// The model of a field at another gain than the pack's. Cheap: reads no sample.
+  /// The model of a field at a gain that differs from the pack's. Cheap: reads no sample.
   /// \param gain_db  re the pack's gain
   /// \throws FileError if the pack has no such code
   [[nodiscard]] engine::RenderingModel model(const std::string& code, double gain_db) const;
 
-  /// A field with its gains. It refers to memory of this object.
+  /// A field with its gains. It references memory of this object.
   /// \throws FileError if the pack has no such code
   [[nodiscard]] engine::FieldWithGains field(const std::string& code) const;
 
-  /// The model of a plane. In a study that levels its fields (study::Fields::levelled), mean
-  /// heights are removed, so that a texture's wall coincides with that of the blank plane. Gains
-  /// then scale forces, which are linear in the gains during contact and below the limits.
+  /// The model of a plane. With study::Fields::has_equal_heights, mean heights are removed, so that
+  /// a texture's wall coincides with that of the blank plane. Gains then scale forces, which are
+  /// linear in the gains during contact and below the limits.
   /// \throws std::logic_error if the plane is not in the task's Fields::mixtures
   /// \throws FileError if the pack has no such field
   [[nodiscard]] engine::RenderingModel plane_of(const study::Plane& plane,
                                                 const study::StudyCodes& codes) const;
 
   /// A plane without texture, for catch trials.
-  [[nodiscard]] const engine::RenderingModel& flat() const noexcept { return *flat_; }
+  [[nodiscard]] const engine::RenderingModel& blank_plane() const noexcept { return *blank_plane_; }
 
   /// Reads a byte of every memory page of every field, so that the servo does not wait for the
   /// disk. It reads all fields, not only the next one, because otherwise the time to read would
@@ -69,27 +69,27 @@ class StimulusSource {
   };
   [[nodiscard]] const Stimulus& stimulus(const std::string& code) const;
 
-  /// Two stimuli and the share of the second; `one` equals `other` if there is no mix.
+  /// Two stimuli and the share of the second; both are equal if there is no mix.
   struct Mix {
-    study::StimulusIndex one;
-    study::StimulusIndex other;
+    study::StimulusIndex first;
+    study::StimulusIndex second;
     double share = 0.0;
     friend auto operator<=>(const Mix&, const Mix&) = default;
   };
   /// A field with its gains applied, and a factor that equalises its strength.
-  struct Applied {
+  struct AppliedField {
     engine::TextureField field;
     double factor = 1.0;
   };
   [[nodiscard]] static Mix mix_of(const study::Plane& plane) noexcept;
-  [[nodiscard]] engine::RenderingModel levelled(const study::Plane& plane) const;
-  [[nodiscard]] Applied applied(const Mix& mix, const study::StudyCodes& codes) const;
+  [[nodiscard]] engine::RenderingModel equal_height_model(const study::Plane& plane) const;
+  [[nodiscard]] AppliedField apply_gains(const Mix& mix, const study::StudyCodes& codes) const;
 
   std::map<std::string, Stimulus, std::less<>> stimuli_;
-  std::optional<engine::RenderingModel> flat_;
+  std::optional<engine::RenderingModel> blank_plane_;
   PlaneGeometry plane_;
   engine::RenderingOptions rendering_;
-  std::map<Mix, Applied> mixes_;  ///< of studies that level their fields
+  std::map<Mix, AppliedField> mixes_;  ///< only if the fields have equal heights
 };
 
 }  // namespace touchtrial::session

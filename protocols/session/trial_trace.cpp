@@ -22,11 +22,11 @@ ContactSums sums_of(const record::Trace& trace, double max_force_n,
   const auto squared = [](double value) { return value * value; };
   const double saturation = squared(0.999 * max_force_n);
   ContactSums sums;
-  const record::TraceSample* before = nullptr;  // the previous sample, if it had contact
+  const record::TraceSample* previous = nullptr;  // the previous sample, if it had contact
   for (const record::TraceSample& sample : trace.samples) {
     const Vec3& f = sample.force_n;
     if (!(f.z > 0.0)) {
-      before = nullptr;
+      previous = nullptr;
       continue;
     }
     const double force_square = f.x * f.x + f.y * f.y + f.z * f.z;
@@ -35,31 +35,31 @@ ContactSums sums_of(const record::Trace& trace, double max_force_n,
     sums.saturated += force_square >= saturation ? 1 : 0;
     sums.weak += force_square < squared(rule.min_median_n) ? 1 : 0;
     sums.strong += force_square > squared(rule.max_median_n) ? 1 : 0;
-    if (before != nullptr) sums.path_mm += norm(sample.position_mm - before->position_mm);
-    before = &sample;
+    if (previous != nullptr) sums.path_mm += norm(sample.position_mm - previous->position_mm);
+    previous = &sample;
   }
   return sums;
 }
 
-/// What the hand did at the plane. It uses only the force normal to the plane, whose mean equals
-/// the hand's own push.
+/// Judges the hand's motion and force at the plane. It uses only the force normal to the plane,
+/// whose mean equals the hand's push.
 record::HandWindows hand_windows(const record::Trace& trace, const study::ValidityRule& rule) {
   double samples = 0.0;
   double path_mm = 0.0;
   double normal_n = 0.0;
-  const record::TraceSample* before = nullptr;  // the previous sample, if it was at the plane
+  const record::TraceSample* previous = nullptr;  // the previous sample, if it was at the plane
   for (const record::TraceSample& sample : trace.samples) {
     if (sample.position_mm.z > kLandingHeightMm) {
-      before = nullptr;
+      previous = nullptr;
       continue;
     }
     samples += 1.0;
     normal_n += sample.force_n.z;
-    if (before != nullptr) {
-      const Vec3 way = sample.position_mm - before->position_mm;
-      path_mm += std::sqrt(way.x * way.x + way.y * way.y);
+    if (previous != nullptr) {
+      const Vec3 step = sample.position_mm - previous->position_mm;
+      path_mm += std::sqrt(step.x * step.x + step.y * step.y);
     }
-    before = &sample;
+    previous = &sample;
   }
   if (samples == 0.0) return {.contact = false, .path = false, .force = false, .speed = false};
   const auto is_within = [](double value, double min, double max) {
@@ -72,6 +72,7 @@ record::HandWindows hand_windows(const record::Trace& trace, const study::Validi
           .speed = is_within(path_mm / time_s, study::kMinStrokeMmS, study::kMaxStrokeMmS)};
 }
 
+/// Time from landing to the last sample; 0 if the stylus never landed.
 double exploring_s(const record::Trace& trace) {
   const auto landing = std::ranges::find_if(trace.samples, [](const record::TraceSample& sample) {
     return sample.position_mm.z <= kLandingHeightMm;
@@ -79,7 +80,7 @@ double exploring_s(const record::Trace& trace) {
   return static_cast<double>(trace.samples.end() - landing) / trace.rate_hz;
 }
 
-/// All measures except the verdict.
+/// Computes all measures except within_limits.
 record::TrialMeasures measures_of(const ContactSums& sums, double rate_hz) {
   if (sums.samples == 0) return {};
   const auto samples = static_cast<double>(sums.samples);
@@ -88,14 +89,14 @@ record::TrialMeasures measures_of(const ContactSums& sums, double rate_hz) {
 }
 
 /// Combines two explorations: the worse of each measure, and sums of counts.
-record::ServoHealth joined(const record::ServoHealth& one, const record::ServoHealth& other) {
-  return {.rate_hz = std::min(one.rate_hz, other.rate_hz),
-          .lateness_p50_us = std::max(one.lateness_p50_us, other.lateness_p50_us),
-          .lateness_p99_us = std::max(one.lateness_p99_us, other.lateness_p99_us),
-          .lateness_p999_us = std::max(one.lateness_p999_us, other.lateness_p999_us),
-          .lateness_worst_us = std::max(one.lateness_worst_us, other.lateness_worst_us),
-          .lost = one.lost + other.lost,
-          .held = one.held + other.held};
+record::ServoHealth combine(const record::ServoHealth& a, const record::ServoHealth& b) {
+  return {.rate_hz = std::min(a.rate_hz, b.rate_hz),
+          .lateness_p50_us = std::max(a.lateness_p50_us, b.lateness_p50_us),
+          .lateness_p99_us = std::max(a.lateness_p99_us, b.lateness_p99_us),
+          .lateness_p999_us = std::max(a.lateness_p999_us, b.lateness_p999_us),
+          .lateness_worst_us = std::max(a.lateness_worst_us, b.lateness_worst_us),
+          .lost = a.lost + b.lost,
+          .held = a.held + b.held};
 }
 
 }  // namespace
@@ -104,8 +105,8 @@ TrialFindings findings_of(const record::Trace& trace, double max_force_n,
                           const study::ValidityRule& rule) {
   const ContactSums sums = sums_of(trace, max_force_n, rule);
   record::TrialMeasures measures = measures_of(sums, trace.rate_hz);
-  // The median is within its limits if at most half of the samples are beyond each, so no sorting
-  // is needed.
+  // The median is within its limits if at most half of the samples are beyond each, so sorting is
+  // not needed.
   const bool median_fits = 2 * sums.weak <= sums.samples && 2 * sums.strong <= sums.samples;
   measures.within_limits = measures.contact_s >= rule.min_contact_s &&
                            measures.path_mm >= rule.min_path_mm && median_fits &&
@@ -128,28 +129,30 @@ void TrialTrace::begin() {
 
 record::Trace& TrialTrace::next_part() {
   if (packing_.valid()) packing_.wait();
-  return explorations_.empty() ? trace_ : more_;
+  return explorations_.empty() ? trace_ : later_trace_;
 }
 
-void TrialTrace::add(const Exploration& done, std::chrono::nanoseconds began) {
-  const record::Trace& part = explorations_.empty() ? trace_ : more_;
+void TrialTrace::add(const Exploration& exploration, std::chrono::nanoseconds began) {
+  const record::Trace& part = explorations_.empty() ? trace_ : later_trace_;
   explorations_.push_back(static_cast<std::int64_t>(part.samples.size()));
   began_ns_.push_back(began.count());
   if (explorations_.size() > 1) {
-    trace_.samples.insert(trace_.samples.end(), more_.samples.begin(), more_.samples.end());
+    trace_.samples.insert(trace_.samples.end(), later_trace_.samples.begin(),
+                          later_trace_.samples.end());
   }
-  ticks_ += done.servo.ticks + done.servo.overruns;
-  overruns_ += done.servo.overruns;
-  limited_ticks_ += done.servo.limited_ticks;
-  held_in_contact_ += done.held_in_contact;
-  force_limit_n_ = done.servo.force_limit_n;
-  if (done.health) health_ = health_ ? joined(*health_, *done.health) : *done.health;
+  ticks_ += exploration.servo.ticks + exploration.servo.overruns;
+  overruns_ += exploration.servo.overruns;
+  limited_ticks_ += exploration.servo.limited_ticks;
+  held_in_contact_ += exploration.held_in_contact;
+  force_limit_n_ = exploration.servo.force_limit_n;
+  if (exploration.health)
+    health_ = health_ ? combine(*health_, *exploration.health) : *exploration.health;
 }
 
 void TrialTrace::pack(const Session& session, bool in_background) {
   const int trial = session.current()->place.trial;
   packing_ = std::async(in_background ? std::launch::async : std::launch::deferred,
-                        [this, &session, trial] { return judged(session, trial); });
+                        [this, &session, trial] { return evaluate(session, trial); });
 }
 
 record::TraceBody TrialTrace::body(int trial) const {
@@ -163,7 +166,7 @@ record::TraceBody TrialTrace::body(int trial) const {
   return body;
 }
 
-JudgedEvidence TrialTrace::judged(const Session& session, int trial) const {
+JudgedEvidence TrialTrace::evaluate(const Session& session, int trial) const {
   TrialFindings findings = findings_of(trace_, force_limit_n_, session.options().validity);
   if (held_in_contact_ > 0) findings.measures.within_limits = false;
   record::TraceBody body = this->body(trial);
@@ -171,7 +174,7 @@ JudgedEvidence TrialTrace::judged(const Session& session, int trial) const {
   body.hand = findings.hand;
   body.saturated = findings.saturated;
   if (health_) findings.measures.limited_ticks = limited_ticks_;
-  return {session.packed(body, findings.measures, trace_), findings.valid()};
+  return {session.pack_evidence(body, findings.measures, trace_), findings.is_valid()};
 }
 
 }  // namespace touchtrial::session

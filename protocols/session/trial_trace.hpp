@@ -1,5 +1,5 @@
-/// \file The trace of one trial: measures of its samples, the rule for a valid trial, and the
-/// evidence that is stored with the answer.
+/// \file The trace of one trial: measures of its samples, the validity rule, and the evidence that
+/// is stored with the answer.
 #pragma once
 
 #include "protocols/session/exploration.hpp"
@@ -23,13 +23,14 @@ struct TrialFindings {
   /// Whether duration, path along the plane, mean normal force and mean speed were within the
   /// limits of the rule and the instructions, while the hand was at most kLandingHeightMm above the
   /// plane. None depends on the texture unless the texture impedes the hand: over a second, the
-  /// mean force equals the hand's push, for any relief, the lateral force or the force limit.
+  /// mean force equals the hand's push, regardless of relief, lateral force and force limit.
   /// Stored unencrypted. Source: docs/decisions/0054-what-a-trial-shows.md.
   record::HandWindows hand{};
   bool saturated = false;  ///< whether the share of saturated samples exceeds the rule's; sealed
 
-  /// Whether the whole rule is met, except that no tick in contact may be missing.
-  [[nodiscard]] bool valid() const noexcept { return long_enough && measures.within_limits; }
+  /// Whether the rule is met, except for its condition that no tick in contact is missing, which is
+  /// not checked here.
+  [[nodiscard]] bool is_valid() const noexcept { return long_enough && measures.within_limits; }
 };
 
 /// A sample has contact if its normal force is above zero; it is saturated if the norm of its force
@@ -53,9 +54,9 @@ class TrialTrace {
   void begin();
   /// The trace of the next exploration, for the explorer. Waits until packing is over.
   [[nodiscard]] record::Trace& next_part();
-  /// Appends that exploration.
-  /// \param began  its first tick, since the presentation began
-  void add(const Exploration& done, std::chrono::nanoseconds began);
+  /// Appends the exploration whose trace `next_part` returned.
+  /// \param began  time of its first tick, since the presentation began
+  void add(const Exploration& exploration, std::chrono::nanoseconds began);
   /// Duration of the explorations in ticks of the servo's clock.
   [[nodiscard]] std::int64_t ticks() const noexcept { return ticks_; }
 
@@ -65,17 +66,17 @@ class TrialTrace {
   ///   duration differs between textures.
   void pack(const Session& session, bool in_background);
   /// Waits for `pack` and returns its result. Call once for each `pack`.
-  /// \throws what packing threw
+  /// \throws exceptions of packing
   [[nodiscard]] JudgedEvidence take_evidence() { return packing_.get(); }
 
  private:
   [[nodiscard]] record::TraceBody body(int trial) const;
-  [[nodiscard]] JudgedEvidence judged(const Session& session, int trial) const;
+  [[nodiscard]] JudgedEvidence evaluate(const Session& session, int trial) const;
 
   record::Trace trace_;
-  record::Trace more_;                      ///< of an exploration after the first
-  std::vector<std::int64_t> explorations_;  ///< samples of each
-  std::vector<std::int64_t> began_ns_;      ///< of each, since the presentation began
+  record::Trace later_trace_;               ///< of an exploration after the first
+  std::vector<std::int64_t> explorations_;  ///< number of samples of each
+  std::vector<std::int64_t> began_ns_;      ///< start of each, since the presentation began
   std::int64_t ticks_ = 0;
   std::int64_t overruns_ = 0;
   std::int64_t limited_ticks_ = 0;

@@ -8,21 +8,21 @@
 namespace touchtrial::simulation {
 namespace {
 
-/// A participant's own value: the population's, plus spread times a standard normal number. Each
-/// purpose has its own stream, so that no spread changes another draw.
+/// Draws a participant's value: the population's value plus spread times a standard normal number.
+/// Each purpose has its own stream, so that no spread changes another draw.
 double individual_value(double value, double spread, std::string_view purpose, std::uint64_t seed,
                         std::uint64_t number) {
   if (spread == 0.0) return value;
   return value + spread * RandomStream(seed, purpose, number).normal();
 }
 
-/// Presentations felt at earlier visits and not yet forgotten.
-double felt_before(const Learning& learning, int visit, int presentations) {
-  double felt = 0.0;
+/// The number of presentations at earlier visits, less those forgotten.
+double earlier_presentations(const Learning& learning, int visit, int presentations) {
+  double count = 0.0;
   for (int earlier = 1; earlier < visit; ++earlier) {
-    felt = (felt + presentations) * (1.0 - learning.forgotten);
+    count = (count + presentations) * (1.0 - learning.forgotten);
   }
-  return felt;
+  return count;
 }
 
 }  // namespace
@@ -36,32 +36,33 @@ Condition::Condition(const SubjectModel& subject, std::uint64_t seed, int number
       first_log_(std::log(subject.learning.factor) *
                  std::exp(individual_value(0.0, subject.learning.spread, "subject: learning", seed,
                                            number_))),
-      felt_before_(felt_before(subject.learning, visit, presentations)),
-      to_answer_(individual_value(subject.serial.answer, subject.serial.answer_spread,
-                                  "subject: leaning to the last answer", seed, number_)),
-      to_stimulus_(individual_value(subject.serial.stimulus, subject.serial.stimulus_spread,
-                                    "subject: leaning to the last stimulus", seed, number_)) {}
+      earlier_presentations_(earlier_presentations(subject.learning, visit, presentations)),
+      answer_leaning_(individual_value(subject.serial.answer, subject.serial.answer_spread,
+                                       "subject: leaning to the last answer", seed, number_)),
+      stimulus_leaning_(individual_value(subject.serial.stimulus, subject.serial.stimulus_spread,
+                                         "subject: leaning to the last stimulus", seed, number_)) {}
 
-Moment Condition::before(int nth, int block) {
+ConditionEffects Condition::effects_on(int nth, int block) {
   tire(nth - 1);
-  const double felt = felt_before_ + (nth - 1);
-  const double learning_log = first_log_ * std::exp(-felt / subject_->learning.trials);
+  const double presentations = earlier_presentations_ + (nth - 1);
+  const double learning_log = first_log_ * std::exp(-presentations / subject_->learning.trials);
   const double tired_log = subject_->fatigue.noise_per_min * tired_min_;
-  Moment moment;
+  ConditionEffects moment;
   moment.noise_factor = std::exp(learning_log + tired_log + period_log(block));
   moment.lapse_log_odds = subject_->fatigue.lapse_per_min * tired_min_;
-  if (answered_ && to_answer_ != 0.0) moment.to_answer = {*answered_, to_answer_};
-  if (presented_ && to_stimulus_ != 0.0) moment.to_stimulus = {*presented_, to_stimulus_};
+  if (answered_ && answer_leaning_ != 0.0) moment.answer_leaning = {*answered_, answer_leaning_};
+  if (presented_ && stimulus_leaning_ != 0.0)
+    moment.stimulus_leaning = {*presented_, stimulus_leaning_};
   if (subject_->thought) moment.thought = &*subject_->thought;
   return moment;
 }
 
-void Condition::rest(int begun) {
-  tire(begun);
+void Condition::rest(int presentations) {
+  tire(presentations);
   tired_min_ *= 1.0 - subject_->fatigue.recovered;
 }
 
-void Condition::after(std::size_t answered, std::optional<std::size_t> presented) {
+void Condition::record_trial(std::size_t answered, std::optional<std::size_t> presented) {
   answered_ = answered;
   presented_ = presented;
 }
@@ -71,10 +72,10 @@ void Condition::forget() noexcept {
   presented_.reset();
 }
 
-void Condition::tire(int done) {
-  constexpr double kSecondsAMinute = 60.0;
-  tired_min_ += (done - tired_by_) * subject_->explore_s / kSecondsAMinute;
-  tired_by_ = done;
+void Condition::tire(int presentations) {
+  constexpr double kSecondsPerMinute = 60.0;
+  tired_min_ += (presentations - tired_presentations_) * subject_->explore_s / kSecondsPerMinute;
+  tired_presentations_ = presentations;
 }
 
 double Condition::period_log(int block) {

@@ -22,18 +22,19 @@ void check(const FeltBankOptions& options) {
 }
 
 /// Reports progress from several threads.
-class Count {
+class ProgressCounter {
  public:
-  Count(const study::Progress& progress, int of) : progress_(progress), of_(of) {}
-  void one_more() {
+  ProgressCounter(const study::Progress& progress, int total)
+      : progress_(progress), total_(total) {}
+  void increment() {
     if (!progress_) return;
     const std::lock_guard lock(mutex_);
-    progress_(++done_, of_);
+    progress_(++done_, total_);
   }
 
  private:
   const study::Progress& progress_;
-  int of_;
+  int total_;
   int done_ = 0;
   std::mutex mutex_;
 };
@@ -46,18 +47,18 @@ FeltBank::FeltBank(const LabelledFields& fields, const study::Study& study,
     : explorations_(options.explorations) {
   check(options);
   for (const LabelledField& field : fields.all()) stimuli_.push_back(field.stimulus);
-  const auto each = static_cast<std::size_t>(explorations_);
-  felt_.resize(stimuli_.size() * each);
+  const auto per_stimulus = static_cast<std::size_t>(explorations_);
+  felt_.resize(stimuli_.size() * per_stimulus);
   const device::ServoOptions servo = session::trial_servo_options(study, device::kServoRateHz, {});
-  Count count(progress, static_cast<int>(felt_.size()));
+  ProgressCounter counter(progress, static_cast<int>(felt_.size()));
   const auto feel = [&](std::size_t i) {
-    const std::size_t place = i / each;
-    const std::uint64_t index = (std::uint64_t{place} << kExplorationBits) + i % each;
+    const std::size_t place = i / per_stimulus;
+    const std::uint64_t index = (std::uint64_t{place} << kExplorationBits) + i % per_stimulus;
     const double gain_db = fields.draw_gain_db({options.seed, "subject: felt bank gain", index});
     felt_[i] = feel_exploration(fields.all()[place].model(gain_db), fields.plane(), subject, servo,
                                 RandomStream(options.seed, "subject: felt bank", index),
-                                hand_of_participant(subject, options.seed, 1 + i % each));
-    count.one_more();
+                                hand_of_participant(subject, options.seed, 1 + i % per_stimulus));
+    counter.increment();
   };
   in_parallel(options.jobs, felt_.size(), feel);
 }

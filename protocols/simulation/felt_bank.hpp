@@ -1,5 +1,5 @@
-/// \file Precomputed explorations of every stimulus. Planning draws from them, so that the servo need
-/// not run for every trial of every simulated study.
+/// \file Precomputed explorations of every stimulus. Planning draws from them, so that the servo
+/// need not run for every trial of every simulated study.
 #pragma once
 
 #include "core/random.hpp"
@@ -15,16 +15,17 @@
 namespace touchtrial::simulation {
 
 struct FeltBankOptions {
-  int explorations = 200;  ///< of each stimulus, 1 .. 2^24 - 1
-  std::uint64_t seed = 1;  ///< of the paths, which differ from those of trials and training
+  int explorations = 200;  ///< number per stimulus, 1 .. 2^24 - 1
+  std::uint64_t seed = 1;  ///< of the paths, which are not those of trials or training
   int jobs = 1;            ///< threads, >= 1; results do not depend on it
 };
 
-/// Features without noise of many explorations of each stimulus (class x exemplar x method). Hand,
-/// servo, force limit and sense are those of trials, so that each exploration is an independent
-/// draw from the features of a trial with that stimulus, its gain included. Exploration i depends
-/// only on study, fields, seed, the stimulus's place, i, and the subject's hand and path. A larger
-/// bank therefore begins with the smaller one. Holds no references; immutable and thread-safe.
+/// Features without noise, from many explorations of each stimulus (class x exemplar x method).
+/// Hand, servo, force limit and sense are the same as in trials. Each exploration is thus an
+/// independent draw from the features of a trial with that stimulus, including its gain.
+/// Exploration i depends only on study, fields, seed, the stimulus's place, i, and the subject's
+/// hand and path, so that a larger bank begins with the smaller one. Contains no references;
+/// immutable and thread-safe.
 class FeltBank {
  public:
   /// Explores every stimulus. Time: explorations x stimuli x explore_s x 0.15 ms of one thread
@@ -59,11 +60,10 @@ class FeltBank {
 
 /// The features that a participant of simulate_study feels in one presentation, computed without a
 /// session but with bit-identical results. Takes as long as one exploration of a bank.
-/// \param gain_db  of the presentation
-/// \param seed  of the simulation
-/// \param number  of the participant, from 1
-/// \param nth  number of the presentation among those that the participant begins, from 1, including
-///   unscored ones
+/// \param gain_db  the presentation's gain
+/// \param seed  the simulation's seed
+/// \param number  the participant's number, from 1
+/// \param nth  number of the presentation for this participant, from 1, including unscored ones
 [[nodiscard]] engine::FeltFeatures feel_trial(const LabelledField& field, double gain_db,
                                               const PlaneGeometry& plane, const study::Study& study,
                                               const SubjectModel& subject, std::uint64_t seed,

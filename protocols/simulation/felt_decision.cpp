@@ -18,9 +18,9 @@ double with_log_odds(double probability, double log_odds) {
 
 namespace {
 
-/// A standard normal number. Each purpose has its own stream, so that no spread changes another
-/// draw.
-double deviation(std::string_view purpose, std::uint64_t seed, std::uint64_t number) {
+/// Draws a standard normal number. Each purpose has its own stream, so that no spread changes
+/// another draw.
+double draw_standard_normal(std::string_view purpose, std::uint64_t seed, std::uint64_t number) {
   return RandomStream(seed, purpose, number).normal();
 }
 
@@ -29,35 +29,36 @@ double deviation(std::string_view purpose, std::uint64_t seed, std::uint64_t num
 double individual_lapse(const SubjectModel& subject, std::uint64_t seed, std::uint64_t number) {
   if (subject.lapse_spread == 0.0) return subject.lapse;
   return with_log_odds(subject.lapse,
-                       subject.lapse_spread * deviation("subject: lapse", seed, number));
+                       subject.lapse_spread * draw_standard_normal("subject: lapse", seed, number));
 }
 
 double individual_position_bias(const SubjectModel& subject, std::uint64_t seed,
                                 std::uint64_t number) {
   if (subject.position_bias_spread == 0.0) return subject.position_bias;
-  return subject.position_bias +
-         subject.position_bias_spread * deviation("subject: position bias", seed, number);
+  return subject.position_bias + subject.position_bias_spread *
+                                     draw_standard_normal("subject: position bias", seed, number);
 }
 
-/// Preference for the class with this label, wherever its picture lies.
+/// Preference for the class with this label, regardless of its picture's position.
 double class_preference(const SubjectModel& subject, const std::string& label, std::uint64_t seed,
                         std::uint64_t number) {
   if (subject.class_bias_spread == 0.0) return 0.0;
-  return subject.class_bias_spread * deviation("subject: bias for " + label, seed, number);
+  return subject.class_bias_spread *
+         draw_standard_normal("subject: bias for " + label, seed, number);
 }
 
 engine::FeltNoise individual_noise(const SubjectModel& subject, std::uint64_t seed,
                                    std::uint64_t number) {
-  const double factor =
-      std::exp(subject.feature_noise_spread * deviation("subject: acuity", seed, number));
+  const double factor = std::exp(subject.feature_noise_spread *
+                                 draw_standard_normal("subject: acuity", seed, number));
   return {subject.feature_noise * factor, subject.common_noise * factor};
 }
 
 std::optional<FeltFloor> individual_floor(const SubjectModel& subject, engine::FeltNoise noise,
                                           std::uint64_t seed, std::uint64_t number) {
   if (!subject.sense) return std::nullopt;
-  return floor_of(noise,
-                  subject.threshold_spread_db * deviation("subject: threshold", seed, number));
+  return floor_of(noise, subject.threshold_spread_db *
+                             draw_standard_normal("subject: threshold", seed, number));
 }
 
 constexpr double kMinThoughtS = 0.8;
@@ -65,14 +66,15 @@ constexpr double kMaxThoughtS = 4.0;
 
 /// The label of the picture that a class is matched to, given the class's own label.
 const std::string& matched_label(const SubjectModel& subject, const std::string& label) {
-  for (const auto& [one, other] : subject.label_swap) {
-    if (label == one) return other;
-    if (label == other) return one;
+  for (const auto& [first, second] : subject.label_swap) {
+    if (label == first) return second;
+    if (label == second) return first;
   }
   return label;
 }
 
-void lean(const std::optional<Moment::Leaning>& leaning, std::vector<double>& support) {
+void add_leaning(const std::optional<ConditionEffects::Leaning>& leaning,
+                 std::vector<double>& support) {
   if (leaning && leaning->position < support.size()) {
     support[leaning->position] += leaning->log_odds;
   }
@@ -107,9 +109,9 @@ Individual::Individual(const SubjectModel& subject, std::uint64_t seed, int numb
 
 std::vector<double> Individual::bias(const std::vector<std::string>& labels) const {
   std::vector<double> bias(labels.size(), 0.0);
-  const double last = std::max(1.0, static_cast<double>(labels.size()) - 1.0);
+  const double last_index = std::max(1.0, static_cast<double>(labels.size()) - 1.0);
   for (std::size_t i = 0; i < labels.size(); ++i) {
-    bias[i] = position_bias_ * (1.0 - static_cast<double>(i) / last);
+    bias[i] = position_bias_ * (1.0 - static_cast<double>(i) / last_index);
     for (const ClassBias& preferred : subject_->class_bias) {
       if (preferred.label == labels[i]) bias[i] += preferred.log_odds;
     }
@@ -118,20 +120,20 @@ std::vector<double> Individual::bias(const std::vector<std::string>& labels) con
   return bias;
 }
 
-SeenPictures see(const std::vector<std::string>& labels, const SubjectModel& subject,
-                 const Individual& individual, const FeltKnowledge& knowledge) {
-  SeenPictures seen{individual.bias(labels), {}};
-  for (const std::string& felt : knowledge.label_of_prototype) {
-    const auto picture = std::ranges::find(labels, matched_label(subject, felt));
+MatchedPictures match_pictures(const std::vector<std::string>& labels, const SubjectModel& subject,
+                               const Individual& individual, const FeltKnowledge& knowledge) {
+  MatchedPictures matches{individual.bias(labels), {}};
+  for (const std::string& label : knowledge.label_of_prototype) {
+    const auto picture = std::ranges::find(labels, matched_label(subject, label));
     if (picture == labels.end()) {
       throw std::invalid_argument("SimulatedParticipant: a learnt class has no picture");
     }
-    seen.picture_of_prototype.push_back(static_cast<std::size_t>(picture - labels.begin()));
+    matches.picture_of_prototype.push_back(static_cast<std::size_t>(picture - labels.begin()));
   }
-  return seen;
+  return matches;
 }
 
-std::optional<std::size_t> picture_of(const std::string& label, const SeenPictures& pictures,
+std::optional<std::size_t> picture_of(const std::string& label, const MatchedPictures& pictures,
                                       const FeltKnowledge& knowledge) {
   const auto& labels = knowledge.label_of_prototype;
   const auto found = std::ranges::find(labels, label);
@@ -140,13 +142,14 @@ std::optional<std::size_t> picture_of(const std::string& label, const SeenPictur
 }
 
 void end_trial(Condition& condition, const TrialPlace& place, int answered,
-               const SeenPictures& pictures, const FeltKnowledge& knowledge) {
+               const MatchedPictures& pictures, const FeltKnowledge& knowledge) {
   if (!place.carries_over) return condition.forget();
-  condition.after(static_cast<std::size_t>(answered), picture_of(place.label, pictures, knowledge));
+  condition.record_trial(static_cast<std::size_t>(answered),
+                         picture_of(place.label, pictures, knowledge));
 }
 
 std::vector<double> support_of_pictures(const engine::FeltClassifier& classifier,
-                                        const SeenPictures& pictures,
+                                        const MatchedPictures& pictures,
                                         const engine::FeltFeatures& perceived) {
   const std::vector<double> logs = classifier.log_likelihoods(perceived);
   std::vector<double> support(pictures.bias.size(), -std::numeric_limits<double>::infinity());
@@ -161,33 +164,34 @@ FeltDecision::FeltDecision(const Individual& individual, const FeltKnowledge& kn
     : noise_(individual.noise()),
       floor_(individual.floor()),
       lapse_(individual.lapse()),
-      classifier_(examples_above(knowledge, floor_), noise_) {}
+      classifier_(perceived_examples(knowledge, floor_), noise_) {}
 
 ParticipantAnswer FeltDecision::answer(const engine::FeltFeatures& felt,
-                                       const SeenPictures& pictures, RandomStream& random,
-                                       const Moment& moment) const {
+                                       const MatchedPictures& pictures, RandomStream& random,
+                                       const ConditionEffects& moment) const {
   const double lapse =
       moment.lapse_log_odds == 0.0 ? lapse_ : with_log_odds(lapse_, moment.lapse_log_odds);
-  const bool lapses = random.uniform() < lapse;
-  const int anything = static_cast<int>(random.below(pictures.bias.size()));
+  const bool is_lapse = random.uniform() < lapse;
+  const int random_position = static_cast<int>(random.below(pictures.bias.size()));
   double thought_s = random.uniform(kMinThoughtS, kMaxThoughtS);
-  const engine::FeltNoise noise{noise_.own * moment.noise_factor,
+  const engine::FeltNoise noise{noise_.independent * moment.noise_factor,
                                 noise_.common * moment.noise_factor};
   engine::FeltFeatures perceived = felt;
   if (floor_) floor_->apply_to(perceived);
-  for (double& feature : perceived) feature += noise.own * random.normal();
+  for (double& feature : perceived) feature += noise.independent * random.normal();
   if (noise.common > 0.0) {
-    const double shared = noise.common * random.normal();
-    for (double& feature : perceived) feature += shared;
+    const double common_error = noise.common * random.normal();
+    for (double& feature : perceived) feature += common_error;
   }
   std::vector<double> support = support_of_pictures(classifier_, pictures, perceived);
-  lean(moment.to_answer, support);
-  lean(moment.to_stimulus, support);
-  const int named = index_of_max(support, random);
+  add_leaning(moment.answer_leaning, support);
+  add_leaning(moment.stimulus_leaning, support);
+  const int best_position = index_of_max(support, random);
   if (moment.thought != nullptr) {
     thought_s = thought_time_s(*moment.thought, margin_of(support), random);
   }
-  return {lapses ? anything : named, std::chrono::milliseconds(std::llround(thought_s * 1000.0))};
+  return {is_lapse ? random_position : best_position,
+          std::chrono::milliseconds(std::llround(thought_s * 1000.0))};
 }
 
 }  // namespace touchtrial::simulation

@@ -26,7 +26,7 @@ HandSense::HandSense(const SubjectModel& subject)
 
 void HandSense::begin(device::SimulatedHand& hand, const PlaneGeometry& plane) {
   sense_.reset(plane);
-  if (!feels_forces_) hand.feel_by(*this);
+  if (!feels_forces_) hand.set_sense(*this);
 }
 
 void HandSense::feel(const device::ServoSample& sample) noexcept {

@@ -1,4 +1,5 @@
-/// \file A simulated hand that explores a plane, and what it feels, without session and trace.
+/// \file A simulated hand's exploration of a plane and its felt features, without session and
+/// trace.
 #pragma once
 
 #include "core/plane_geometry.hpp"
@@ -14,7 +15,7 @@
 
 namespace touchtrial::simulation {
 
-/// What a subject feels through a hand: the servo's forces, or the accelerations of the tip.
+/// A subject's sense of touch: it feels the servo's forces, or the accelerations of the tip.
 class HandSense final : private device::TipSense {
  public:
   explicit HandSense(const SubjectModel& subject);
@@ -24,7 +25,7 @@ class HandSense final : private device::TipSense {
 
   /// Restarts with a hand at the beginning of its exploration; the hand must not outlive this.
   void begin(device::SimulatedHand& hand, const PlaneGeometry& plane);
-  /// Adds a sample of the servo. Takes as long as TextureSense.
+  /// Adds a sample of the servo, in the time of TextureSense.
   void feel(const device::ServoSample& sample) noexcept;
   /// Features without noise (see FeltDecision). Call only after the last tick.
   [[nodiscard]] engine::FeltFeatures features() const noexcept { return sense_.features(); }
@@ -41,12 +42,12 @@ class HandSense final : private device::TipSense {
 
 /// Factors by which a participant's hand differs from the median, determined by the arguments.
 /// Source: docs/planning.md, "Differences between participants".
-/// \param number  of the participant, from 1
+/// \param number  the participant's number, from 1
 [[nodiscard]] device::HandFactors hand_of_participant(const SubjectModel& subject,
                                                       std::uint64_t seed, std::uint64_t number);
 
-/// Makes a hand above the plane with a random path and starting height.
-/// \param factors  of the participant: hand_of_participant
+/// Creates a hand above the plane with a random path and starting height.
+/// \param factors  from hand_of_participant
 [[nodiscard]] device::SimulatedHand make_exploring_hand(const SubjectModel& subject,
                                                         const PlaneGeometry& plane,
                                                         RandomStream& random,
@@ -58,7 +59,7 @@ class HandSense final : private device::TipSense {
 /// ticks before it. Takes about 0.1 us per tick.
 /// \param plane  extent of the explored area: session::StimulusSource::plane
 /// \param random  for the path and the starting height
-/// \param factors  of the participant: hand_of_participant
+/// \param factors  from hand_of_participant
 /// \return the features without noise, natural logarithms of newtons
 [[nodiscard]] engine::FeltFeatures feel_exploration(const engine::RenderingModel& model,
                                                     const PlaneGeometry& plane,

@@ -12,7 +12,7 @@ void FeltFloor::apply_to(std::span<double> features) const noexcept {
 }
 
 double strength_noise(engine::FeltNoise noise) noexcept {
-  return std::hypot(noise.common, noise.own / std::sqrt(double{engine::kFeltFeatures}));
+  return std::hypot(noise.common, noise.independent / std::sqrt(double{engine::kFeltFeatures}));
 }
 
 FeltFloor floor_of(engine::FeltNoise noise, double more_sensitive_db) noexcept {
@@ -22,8 +22,8 @@ FeltFloor floor_of(engine::FeltNoise noise, double more_sensitive_db) noexcept {
   return {std::pow(10.0, more_sensitive_db / 10.0), 1.0 / std::expm1(2.0 * step)};
 }
 
-std::vector<engine::FeltExample> examples_above(const FeltKnowledge& knowledge,
-                                                const std::optional<FeltFloor>& floor) {
+std::vector<engine::FeltExample> perceived_examples(const FeltKnowledge& knowledge,
+                                                    const std::optional<FeltFloor>& floor) {
   std::vector<engine::FeltExample> examples = knowledge.examples;
   if (!floor) return examples;
   for (engine::FeltExample& example : examples) floor->apply_to(example.features);

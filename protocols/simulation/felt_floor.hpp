@@ -16,26 +16,26 @@ namespace touchtrial::simulation {
 /// intensities in units of the threshold. A person perceives a feature f as
 /// 0.5 ln(share exp(2 f) + floor), so that features far below the threshold are indistinguishable.
 struct FeltFloor {
-  double share = 1.0;  ///< factor on the power by the person's sensitivity, > 0
+  double share = 1.0;  ///< factor on the power for the person's sensitivity, > 0
   double floor = 1.0;  ///< power perceived without any stimulus, > 0
 
   void apply_to(std::span<double> features) const noexcept;
 };
 
-/// The d' at which 79.4 % of answers among three intervals are right, where a one-up three-down
-/// track settles.
+/// The d' with 79.4 % right answers among three intervals, to which a one-up three-down track
+/// converges.
 inline constexpr double kThresholdDPrime = 1.6232289;
 
 /// \return the standard deviation of the noise of a texture's strength, the mean of all features
 [[nodiscard]] double strength_noise(engine::FeltNoise noise) noexcept;
 
-/// Computes the floor from which a vibration at the curve's threshold differs by kThresholdDPrime.
-/// The noise thus determines the floor; noise below 1 % counts as 1 %.
-/// \param more_sensitive_db  by how much the person is more sensitive than the curve
+/// Computes the floor for which a vibration at the curve's threshold has kThresholdDPrime. The
+/// noise thus determines the floor; noise below 1 % counts as 1 %.
+/// \param more_sensitive_db  the person's sensitivity re the curve, dB
 [[nodiscard]] FeltFloor floor_of(engine::FeltNoise noise, double more_sensitive_db) noexcept;
 
 /// \return the examples as a person with this floor perceives them; unchanged without a floor
-[[nodiscard]] std::vector<engine::FeltExample> examples_above(
+[[nodiscard]] std::vector<engine::FeltExample> perceived_examples(
     const FeltKnowledge& knowledge, const std::optional<FeltFloor>& floor);
 
 }  // namespace touchtrial::simulation

@@ -32,7 +32,7 @@ LabelledFields::LabelledFields(const study::StudyCodes& key, const session::Stim
 }
 
 double LabelledFields::draw_gain_db(RandomStream random) const {
-  return trials_.own_gain_db() + study::draw_rove_db(trials_.rove_db, random);
+  return trials_.centre_gain_db() + study::draw_rove_db(trials_.rove_db, random);
 }
 
 FeltKnowledge learn_by_feeling(const LabelledFields& fields, const SubjectModel& subject,
@@ -45,7 +45,7 @@ FeltKnowledge learn_by_feeling(const LabelledFields& fields, const SubjectModel&
   knowledge.examples.resize(fields.all().size() * passes);
   const device::ServoOptions options = training_options(subject, max_force_n);
   // The strokes are the same on every field, so that prototypes differ only by texture, and equal
-  // fields are learnt as equal.
+  // fields have equal prototypes.
   const auto feel_pass = [&](std::size_t pass) {
     RandomStream random(seed, "subject: training pass", pass);
     device::SimulatedHand hand = make_exploring_hand(subject, fields.plane(), random);

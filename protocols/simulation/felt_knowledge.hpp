@@ -26,9 +26,9 @@ struct LabelledField {
   }
 };
 
-/// Every presented stimulus of a study by label, ordered by class, image and method. This is the
-/// only access to fields by label; the code that runs trials does not use it. The source must
-/// outlive it.
+/// Every presented stimulus of a study by label, ordered by class, image and method. Only training
+/// and planning access fields by label, never the code that runs trials. The source must outlive
+/// it.
 class LabelledFields {
  public:
   /// \throws FileError if the pack lacks a stimulus of the study
@@ -49,13 +49,13 @@ class LabelledFields {
 /// labelled field.
 struct FeltKnowledge {
   std::vector<engine::FeltExample> examples;
-  std::vector<std::string>
-      label_of_prototype;  ///< class label, in the order of LabelledFields::all
+  /// Class labels, in the order of LabelledFields::all.
+  std::vector<std::string> label_of_prototype;
 };
 
 /// Explores every labelled field `training_passes` times, with the device and servo of the trials.
-/// Each pass has its own path and, where gains are roved, its own gain, both the same on every
-/// field; no trial has that path. The result depends on all arguments except `jobs`.
+/// Each pass has its own path and, if gains are roved, its own gain. Both are the same on every
+/// field, and no trial has the path of a pass. The result depends on all arguments except `jobs`.
 /// \param max_force_n  limit of the servo's force, N
 /// \param jobs  threads, >= 1
 [[nodiscard]] FeltKnowledge learn_by_feeling(const LabelledFields& fields,

@@ -1,4 +1,4 @@
-/// \file What the participants of one study learn before it, and what each of them remembers.
+/// \file Training before a study, and each participant's memory of it.
 /// Source: docs/planning.md, "Training".
 #pragma once
 
@@ -11,21 +11,21 @@
 
 namespace touchtrial::simulation {
 
-/// The explorations from which a study's participants learn, by the subject's kind of training:
-/// those that all remember (`shared`), or four times as many, of which each remembers a quarter
-/// (`own`). The result depends on all arguments except `jobs`. Takes 1.5 ms per exploration of 10
-/// s.
-/// \param study  of the fields
+/// The training explorations of a study's participants. With `shared` training, all participants
+/// remember all of them; with `own` training there are four times as many, and each participant
+/// remembers a quarter. The result depends on all arguments except `jobs`. Takes 1.5 ms per
+/// exploration of 10 s.
+/// \param study  the study of the fields
 [[nodiscard]] std::shared_ptr<const FeltKnowledge> learn(const LabelledFields& fields,
                                                          const study::Study& study,
                                                          const SubjectModel& subject,
                                                          std::uint64_t seed, int jobs);
 
 /// The part of `learnt` that one participant remembers; `learnt` itself if all remember the same.
-/// Takes some 10 us for 40 examples.
+/// Takes about 10 us for 40 examples.
 /// \param learnt  from `learn` with this subject
-/// \param number  of the participant, from 1
-[[nodiscard]] std::shared_ptr<const FeltKnowledge> remembered(
+/// \param number  the participant's number, from 1
+[[nodiscard]] std::shared_ptr<const FeltKnowledge> memory_of(
     const std::shared_ptr<const FeltKnowledge>& learnt, const SubjectModel& subject,
     std::uint64_t seed, int number);
 

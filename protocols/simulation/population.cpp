@@ -8,7 +8,7 @@
 namespace touchtrial::simulation {
 namespace {
 
-std::map<std::string_view, MakePopulation>& known_populations() {
+std::map<std::string_view, MakePopulation>& registered_populations() {
   static std::map<std::string_view, MakePopulation> all;
   return all;
 }
@@ -16,13 +16,13 @@ std::map<std::string_view, MakePopulation>& known_populations() {
 }  // namespace
 
 void add_population(std::string_view protocol, MakePopulation make) {
-  known_populations()[protocol] = make;
+  registered_populations()[protocol] = make;
 }
 
 std::unique_ptr<const Population> population_of(const PopulationSetting& setting) {
   const study::Study& study = setting.key.study;
-  const auto found = known_populations().find(study.protocol->name);
-  if (found != known_populations().end()) return found->second(setting);
+  const auto found = registered_populations().find(study.protocol->name);
+  if (found != registered_populations().end()) return found->second(setting);
   throw StudyError(one_line("study " + study.name + ": the protocol " + study.protocol_name() +
                             " has no simulated participants; run it with people"));
 }

@@ -17,7 +17,7 @@ struct PopulationSetting {
   const study::StudyCodes& key;
   const session::StimulusSource& source;
   const SubjectModel& subject;
-  std::uint64_t seed = 1;  ///< of all random numbers of participants
+  std::uint64_t seed = 1;  ///< of all participants' random numbers
   int jobs = 1;            ///< threads for the training before the first trial, >= 1
 };
 
@@ -25,19 +25,19 @@ struct PopulationSetting {
 class Population {
  public:
   virtual ~Population() = default;
-  /// \param number  of the participant, from 1
+  /// \param number  the participant's number, from 1
   /// \return a participant, which must not outlive the population
   [[nodiscard]] virtual std::unique_ptr<SimulatedParticipant> participant(int number) const = 0;
 };
 
 using MakePopulation = std::unique_ptr<const Population> (*)(const PopulationSetting&);
 
-/// Registers how a protocol's simulated participants are made. Call before the first simulation;
-/// not thread-safe.
-/// \param protocol  its name; outlives the program's use of it
+/// Registers the constructor of a protocol's simulated participants. Call before the first
+/// simulation; not thread-safe.
+/// \param protocol  the protocol's name, a string with static lifetime
 void add_population(std::string_view protocol, MakePopulation make);
 
-/// Makes and trains the participants of a study.
+/// Creates and trains the participants of a study.
 /// \throws StudyError if its protocol has no simulated participants
 [[nodiscard]] std::unique_ptr<const Population> population_of(const PopulationSetting& setting);
 

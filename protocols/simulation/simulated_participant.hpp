@@ -31,34 +31,34 @@ struct ParticipantAnswer {
 /// reports the lowest confidence. Subclasses explore and choose.
 class PromptParticipant : public session::Participant {
  public:
-  [[nodiscard]] std::optional<session::StepReply> attend(const session::Step& step) final {
+  [[nodiscard]] std::optional<session::StepReply> show_step(const session::Step& step) final {
     session::StepReply reply;
-    if (const auto* const asked = std::get_if<session::AnswerStep>(&step)) {
-      this->asked(*asked);
-      const ParticipantAnswer own = answer();
-      if (own.ratings.empty()) {
-        reply.answer = Chosen{own.position};
+    if (const auto* const answer_step = std::get_if<session::AnswerStep>(&step)) {
+      on_question(*answer_step);
+      const ParticipantAnswer choice = answer();
+      if (choice.ratings.empty()) {
+        reply.answer = ChoiceAnswer{choice.position};
       } else {
-        reply.answer = Rated{own.ratings};
+        reply.answer = RatingAnswer{choice.ratings};
       }
-      reply.took = own.thought;
-      if (asked->confidence_levels > 0) reply.confidence = 1;
+      reply.took = choice.thought;
+      if (answer_step->confidence_levels > 0) reply.confidence = 1;
     }
-    if (const auto* const asked = std::get_if<session::QuestionStep>(&step)) {
-      reply.answers.resize(asked->questionnaire->questions.size());
+    if (const auto* const question_step = std::get_if<session::QuestionStep>(&step)) {
+      reply.answers.resize(question_step->questionnaire->questions.size());
     }
     if (std::holds_alternative<session::BreakStep>(step)) rest();
-    if (const auto* const next = std::get_if<session::IntervalStep>(&step)) {
+    if (const auto* const interval_step = std::get_if<session::IntervalStep>(&step)) {
       reply.took = kIntervalGap;
-      interval(*next);
+      interval(*interval_step);
     }
     return reply;
   }
 
-  /// The choice after exploring.
+  /// Answers after exploring.
   [[nodiscard]] virtual ParticipantAnswer answer() = 0;
   /// Called before each answer, with its question.
-  virtual void asked(const session::AnswerStep& /*step*/) {}
+  virtual void on_question(const session::AnswerStep& /*step*/) {}
   /// Called at each break.
   virtual void rest() {}
   /// Called before each plane of a trial with several.
@@ -68,7 +68,7 @@ class PromptParticipant : public session::Participant {
   static constexpr std::chrono::seconds kIntervalGap{1};
 };
 
-/// A participant who strokes the plane on a new path in each trial and answers from what was felt.
+/// A participant who strokes the plane on a new path in each trial and answers from felt features.
 /// Random numbers depend only on the seed, the participant's number, and the number of earlier
 /// trials. Subclasses make the choice. The subject must outlive it.
 class SimulatedParticipant : public PromptParticipant {
@@ -79,17 +79,17 @@ class SimulatedParticipant : public PromptParticipant {
 
   /// Starts a visit, with paths and noise that differ from those of earlier visits.
   /// \param visit  from 1
-  /// \param course  of the visit; may be empty
+  /// \param course  the visit's trials; may be empty
   void start_visit(int visit, TrialCourse course = {}) {
     visit_ = visit;
     trials_begun_ = trials_before(visit);
     begin_visit(visit, std::move(course));
   }
-  /// Receives the order that chooses presentations, for observers who need to know the level.
+  /// Receives the order that chooses presentations, for observers that need the level.
   /// \param order  of this visit
   virtual void follow(std::unique_ptr<study::Order> /*order*/) {}
-  /// The number of trials that count as done before a visit; each visit has room for more trials
-  /// than any session has.
+  /// The offset of trial numbers at a visit. Visits do not share numbers, because no session has
+  /// kTrialsOfVisit trials.
   [[nodiscard]] static std::uint64_t trials_before(int visit) noexcept {
     constexpr std::uint64_t kTrialsOfVisit = 1'000'000;
     return static_cast<std::uint64_t>(visit - 1) * kTrialsOfVisit;
@@ -108,9 +108,9 @@ class SimulatedParticipant : public PromptParticipant {
   /// Called at the start of a visit.
   virtual void begin_visit(int /*visit*/, TrialCourse /*course*/) {}
   /// The features of the last exploration, without noise.
-  [[nodiscard]] engine::FeltFeatures felt_last() const noexcept { return sense_.features(); }
+  [[nodiscard]] engine::FeltFeatures last_features() const noexcept { return sense_.features(); }
   /// The number of presentations, or intervals, that have begun in this visit.
-  [[nodiscard]] int begun() const noexcept {
+  [[nodiscard]] int presentations_begun() const noexcept {
     return static_cast<int>(trials_begun_ - trials_before(visit_));
   }
 

@@ -24,8 +24,8 @@ namespace {
 /// The maximum number of jobs. It may exceed the number of cores, but not by much, because the
 /// system may refuse more threads.
 int max_jobs() noexcept {
-  constexpr unsigned kThreadsACore = 4;
-  return static_cast<int>(kThreadsACore * std::max(1U, std::thread::hardware_concurrency()));
+  constexpr unsigned kThreadsPerCore = 4;
+  return static_cast<int>(kThreadsPerCore * std::max(1U, std::thread::hardware_concurrency()));
 }
 
 /// Read-only data shared by all sessions of a simulation.
@@ -78,10 +78,10 @@ record::SessionOpening opening_of(const Setting& setting, const Place& place) {
 /// The key depends on the simulation's seed, so that it is reproducible, and on the study's secret.
 SecretKey participant_key(const Setting& setting, const Place& place) {
   SeededEntropy entropy(setting.seed);
-  const SecretKey drawn =
+  const SecretKey seeded_key =
       entropy.secret("participant key of " + participant_id(place.number) +
                      (place.visit > 1 ? ", visit " + std::to_string(place.visit) : ""));
-  return keyed_hash(setting.key.master, ByteView(drawn));
+  return keyed_hash(setting.key.master, ByteView(seeded_key));
 }
 
 FinishedSession run_session(const Setting& setting, const Place& place) {
@@ -94,7 +94,7 @@ FinishedSession run_session(const Setting& setting, const Place& place) {
   const study::Schedule schedule = order->schedule();
   session::Session session(std::move(order), study.trials,
                            record::SessionRecorder(place.session, key, finished.events),
-                           session::seal_with(setting.key));
+                           session::block_serialiser(setting.key));
   session.open({}, opening_of(setting, place), study::schedule_to_json(schedule, setting.key));
   const std::unique_ptr<SimulatedParticipant> participant =
       setting.population.participant(place.number);
@@ -106,7 +106,7 @@ FinishedSession run_session(const Setting& setting, const Place& place) {
   return finished;
 }
 
-/// Stores sessions in the order in which they arrive, and counts them and their presentations.
+/// Stores sessions in the order of calls, and counts them and their presentations.
 class Collector {
  public:
   /// \param sessions  total number of sessions, for progress
@@ -166,8 +166,8 @@ void run_sessions(const Setting& setting, const SimulationOptions& options, int 
     FinishedSession session;
     std::exception_ptr fault;
   };
-  using Finished = std::shared_ptr<Outcome>;
-  const auto run = [&](int i) -> Finished {
+  using OutcomePointer = std::shared_ptr<Outcome>;
+  const auto run = [&](int i) -> OutcomePointer {
     const auto outcome = std::make_shared<Outcome>();
     try {
       const Place place{first_session + i, options.first_participant + i % options.participants,
@@ -178,7 +178,7 @@ void run_sessions(const Setting& setting, const SimulationOptions& options, int 
     }
     return outcome;
   };
-  const auto store = [&](const Finished& outcome) {
+  const auto store = [&](const OutcomePointer& outcome) {
     if (fault) return;
     fault = outcome->fault;
     try {
@@ -190,8 +190,8 @@ void run_sessions(const Setting& setting, const SimulationOptions& options, int 
   };
   const auto in_order = tbb::filter_mode::serial_in_order;
   const auto pipeline = tbb::make_filter<void, int>(in_order, next) &
-                        tbb::make_filter<int, Finished>(tbb::filter_mode::parallel, run) &
-                        tbb::make_filter<Finished, void>(in_order, store);
+                        tbb::make_filter<int, OutcomePointer>(tbb::filter_mode::parallel, run) &
+                        tbb::make_filter<OutcomePointer, void>(in_order, store);
   const int jobs = std::min(options.jobs, max_jobs());
   const auto threads = static_cast<std::size_t>(jobs);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);

@@ -1,4 +1,4 @@
-/// \file A whole study with simulated participants, in virtual time.
+/// \file A complete study with simulated participants, in virtual time.
 #pragma once
 
 #include "engine/pack/pack.hpp"
@@ -14,9 +14,9 @@ namespace touchtrial::simulation {
 
 struct SimulationOptions {
   int participants = 20;      ///< >= 1
-  std::uint64_t seed = 1;     ///< of all random numbers of participants
+  std::uint64_t seed = 1;     ///< of all participants' random numbers
   int jobs = 1;               ///< threads, >= 1; results do not depend on it
-  int first_participant = 1;  ///< >= 1; P001 is the first, and has enrolment number 1
+  int first_participant = 1;  ///< >= 1; 1 is P001 with enrolment number 1
 };
 
 /// Counts of a simulation, without outcomes.
@@ -36,8 +36,8 @@ struct SimulationReport {
 /// \param progress  called after each session, from one thread at a time
 /// \throws StudyError if the subject names a class that the study does not have
 /// \throws FileError if the pack lacks a stimulus
-/// \throws StoreError if a participant is already in the database or a write fails; sessions stored
-///   before that remain
+/// \throws StoreError if a participant is already in the database or a write fails; sessions that
+///   are already stored remain
 /// \throws std::invalid_argument if an option is out of range
 SimulationReport simulate_study(const study::StudyKey& key, const engine::Pack& pack,
                                 const SubjectModel& subject, const SimulationOptions& options,

@@ -30,8 +30,8 @@ constexpr std::size_t kExplorations = 8;
 /// threshold.
 constexpr std::size_t kBlankExplorations = 64;
 constexpr double kIntervalS = 2.5;
-/// Maximum distance from the pack's gain at which gains are tried.
-constexpr double kTrustedDb = 40.0;
+/// Maximum distance from the pack's gain at which an estimate is refined.
+constexpr double kMaxRefinedDb = 40.0;
 
 using Powers = std::array<double, engine::kSenseBins + 1>;
 using BandPowers = std::array<double, kLevelBands.size()>;
@@ -55,18 +55,20 @@ class CurveSenses final : public device::TipSense {
             const Vec3& acceleration_m_s2) noexcept override {
     for (engine::TextureSense& sense : senses_) sense.feel(position_mm, force_n, acceleration_m_s2);
   }
-  [[nodiscard]] const engine::TextureSense& by(std::size_t curve) const { return senses_[curve]; }
+  [[nodiscard]] const engine::TextureSense& sense(std::size_t curve) const {
+    return senses_[curve];
+  }
 
  private:
   std::array<engine::TextureSense, kCurves> senses_;
 };
 
 /// Features by exploration.
-using Explored = std::vector<engine::FeltFeatures>;
+using ExplorationFeatures = std::vector<engine::FeltFeatures>;
 
 /// Features by curve and exploration.
-struct Felt {
-  std::array<Explored, kCurves> features{};
+struct PlaneFeatures {
+  std::array<ExplorationFeatures, kCurves> features{};
   Powers powers{};  ///< mean over explorations
 };
 
@@ -74,19 +76,20 @@ using Hands = std::vector<device::SimulatedHand>;
 
 /// Explores a plane with several hands.
 /// \param hands  before their first tick, one for each exploration
-Felt feel_plane(const engine::RenderingModel& model, const PlaneGeometry& plane,
-                const device::ServoOptions& servo, std::span<const device::SimulatedHand> hands) {
-  Felt felt;
+PlaneFeatures feel_plane(const engine::RenderingModel& model, const PlaneGeometry& plane,
+                         const device::ServoOptions& servo,
+                         std::span<const device::SimulatedHand> hands) {
+  PlaneFeatures felt;
   for (device::SimulatedHand hand : hands) {
     CurveSenses senses(plane);
-    hand.feel_by(senses);
+    hand.set_sense(senses);
     session::ModelForce force(model);
     NoSamples sink;
     static_cast<void>(device::run_servo_in_virtual_time(hand, force, sink, servo));
     for (std::size_t curve = 0; curve < kCurves; ++curve) {
-      felt.features[curve].push_back(senses.by(curve).features());
+      felt.features[curve].push_back(senses.sense(curve).features());
     }
-    const Powers powers = senses.by(0).mean_powers();
+    const Powers powers = senses.sense(0).mean_powers();
     for (std::size_t k = 0; k < powers.size(); ++k)
       felt.powers[k] += powers[k] / static_cast<double>(hands.size());
   }
@@ -97,7 +100,7 @@ const std::vector<double>& weights_of(engine::ThresholdCurve curve) {
   return engine::threshold_weights(curve, engine::kSenseWindow, device::kServoRateHz);
 }
 
-BandPowers in_bands(const Powers& powers, engine::ThresholdCurve curve) {
+BandPowers band_powers(const Powers& powers, engine::ThresholdCurve curve) {
   const std::vector<double>& weights = weights_of(curve);
   BandPowers bands{};
   for (std::size_t k = 1; k < powers.size(); ++k) {
@@ -116,16 +119,17 @@ double decibels(double power) noexcept {
   return 10.0 * std::log10(std::max(power, std::pow(10.0, kNoLevelDb / 10.0)));
 }
 
-/// The median person of a subject model, who distinguishes a texture from the blank plane. Features
-/// are weighted by how much the texture at full gain changes them. Intervals differ by the person's
+/// The median person of a subject model, who distinguishes a texture from the blank plane. The
+/// weight of a feature is its change by the texture at full gain. Intervals differ by the person's
 /// noise and by the path of the stroke.
 class Detector {
  public:
-  Detector(const SubjectModel& subject, const Explored& blank, const Explored& whole)
+  Detector(const SubjectModel& subject, const ExplorationFeatures& blank,
+           const ExplorationFeatures& texture)
       : noise_{subject.feature_noise, subject.common_noise},
         floor_(floor_of(noise_, 0.0)),
         blank_(powers_of(blank)) {
-    add(0.0, whole);
+    set_texture(0.0, texture);
     for (std::size_t i = 0; i < kExplorations; ++i) {
       const engine::FeltFeatures higher = perceived(i, 1.0);
       const engine::FeltFeatures lower = perceived(i, 0.0);
@@ -136,12 +140,12 @@ class Detector {
     const double sum = std::accumulate(weights_.begin(), weights_.end(), 0.0);
     const double squares =
         std::inner_product(weights_.begin(), weights_.end(), weights_.begin(), 0.0);
-    deviation_ = std::sqrt(noise_.own * noise_.own * squares +
+    deviation_ = std::sqrt(noise_.independent * noise_.independent * squares +
                            noise_.common * noise_.common * sum * sum + variance_of_blank());
   }
 
-  /// Sets the features at one gain, from which those at other gains are extrapolated.
-  void add(double gain_db, const Explored& felt) {
+  /// Sets the features at one gain, from which the features at other gains are extrapolated.
+  void set_texture(double gain_db, const ExplorationFeatures& felt) {
     texture_ = powers_of(felt);
     for (std::size_t i = 0; i < kExplorations; ++i) {
       for (std::size_t k = 0; k < texture_[i].size(); ++k) {
@@ -149,8 +153,8 @@ class Detector {
       }
     }
   }
-  /// \return the gain at which the texture is distinguished from the blank plane, dB; empty if there
-  ///   is none
+  /// \return the gain at which the texture is distinguished from the blank plane, dB; empty if
+  ///   there is none
   [[nodiscard]] std::optional<double> threshold_db() const {
     double below_db = kMinGainDb;
     double above_db = kMaxGainDb;
@@ -168,7 +172,7 @@ class Detector {
   static constexpr double kStepDb = 1e-3;
 
   static double power_of(double gain_db) { return std::pow(10.0, gain_db / 10.0); }
-  static Explored powers_of(Explored explored) {
+  static ExplorationFeatures powers_of(ExplorationFeatures explored) {
     for (engine::FeltFeatures& features : explored) {
       for (double& feature : features) feature = std::exp(2.0 * feature);
     }
@@ -193,32 +197,33 @@ class Detector {
     const auto count = static_cast<double>(strengths.size());
     const double mean = std::accumulate(strengths.begin(), strengths.end(), 0.0) / count;
     double squares = 0.0;
-    for (const double one : strengths) squares += (one - mean) * (one - mean);
+    for (const double value : strengths) squares += (value - mean) * (value - mean);
     return squares / (count - 1.0);
   }
   [[nodiscard]] bool detects(double gain_db) const {
-    double more = 0.0;
+    double difference = 0.0;
     for (std::size_t i = 0; i < kExplorations; ++i) {
-      more += (strength(i, power_of(gain_db)) - strength(i, 0.0)) / kExplorations;
+      difference += (strength(i, power_of(gain_db)) - strength(i, 0.0)) / kExplorations;
     }
-    return deviation_ > 0.0 && more >= kThresholdDPrime * deviation_;
+    return deviation_ > 0.0 && difference >= kThresholdDPrime * deviation_;
   }
 
   engine::FeltNoise noise_;
   FeltFloor floor_;
-  Explored blank_;    // powers
-  Explored texture_;  // powers that the texture at full gain adds to the first of them
+  ExplorationFeatures blank_;    // powers
+  ExplorationFeatures texture_;  // powers that the texture at full gain adds to the blank plane's
   engine::FeltFeatures weights_{};
-  double deviation_ = 0.0;  // of the sum of weighted features, from interval to interval
+  double deviation_ = 0.0;  // standard deviation of the weighted sum between intervals
 };
 
-StimulusLevel level_of(const std::string& device, engine::ThresholdCurve curve, const Felt& felt,
-                       const Felt* blank) {
+StimulusLevel level_of(const std::string& device, engine::ThresholdCurve curve,
+                       const PlaneFeatures& felt, const PlaneFeatures* blank) {
   StimulusLevel level{.device = device, .curve = curve};
-  const BandPowers bands = in_bands(felt.powers, curve);
-  const BandPowers beside = blank != nullptr ? in_bands(blank->powers, curve) : BandPowers{};
+  const BandPowers bands = band_powers(felt.powers, curve);
+  const BandPowers blank_bands =
+      blank != nullptr ? band_powers(blank->powers, curve) : BandPowers{};
   for (std::size_t band = 0; band < bands.size(); ++band) {
-    level.bands_db[band] = decibels(bands[band] / std::max(1.0, beside[band]));
+    level.bands_db[band] = decibels(bands[band] / std::max(1.0, blank_bands[band]));
   }
   level.db = decibels(std::accumulate(bands.begin(), bands.end(), 0.0));
   return level;
@@ -246,57 +251,58 @@ FieldLevels levels_of_fields(std::span<const engine::FieldWithGains> fields,
                              const std::vector<device::DeviceModel>& devices, int jobs,
                              std::uint64_t seed) {
   PlaneGeometry plane = fields.front().field.geometry;
-  for (const engine::FieldWithGains& each : fields) {
-    plane.height_px = std::min(plane.height_px, each.field.geometry.height_px);
-    plane.width_px = std::min(plane.width_px, each.field.geometry.width_px);
+  for (const engine::FieldWithGains& field : fields) {
+    plane.height_px = std::min(plane.height_px, field.field.geometry.height_px);
+    plane.width_px = std::min(plane.width_px, field.field.geometry.width_px);
   }
   const device::ServoOptions servo = session::trial_servo_options(study, device::kServoRateHz, {});
   SubjectModel subject = default_subject();
   subject.sense = engine::ThresholdCurve::israr_2006;  // any curve: accelerations are then felt
   subject.explore_s = kIntervalS + device::SimulatedHand::kPushBuildUpS;
-  // For each device, a hand for each exploration, with the same paths for every plane. The weights
-  // of the curves, which are computed once per process, are computed in parallel.
+  // For each device, one hand per exploration, with the same paths for every plane. The weights of
+  // the curves, which are computed once per process, are computed in parallel.
   std::vector<Hands> hands(devices.size());
   in_parallel(jobs, kCurves + devices.size(), [&](std::size_t i) {
     if (i < kCurves) {
       static_cast<void>(weights_of(engine::kThresholdCurves[i]));
       return;
     }
-    SubjectModel holder = subject;
-    holder.device = devices[i - kCurves];
+    SubjectModel on_device = subject;
+    on_device.device = devices[i - kCurves];
     for (std::size_t path = 0; path < kBlankExplorations; ++path) {
       RandomStream random(seed, "levels: path", path);
-      hands[i - kCurves].push_back(make_exploring_hand(holder, plane, random));
+      hands[i - kCurves].push_back(make_exploring_hand(on_device, plane, random));
       hands[i - kCurves].back().precompute();
     }
   });
-  const auto felt_on = [&](std::size_t device, std::size_t field, double factor,
+  const auto feel_on = [&](std::size_t device, std::size_t field, double factor,
                            std::size_t explorations) {
     const engine::FieldWithGains& stroked_field = fields[field];
-    const engine::Gains own = engine::scaled_db(stroked_field.gains, study.trials.own_gain_db());
-    return feel_plane({stroked_field.field, study.rendering, engine::scaled(own, factor)}, plane,
+    const engine::Gains gains =
+        engine::scaled_db(stroked_field.gains, study.trials.centre_gain_db());
+    return feel_plane({stroked_field.field, study.rendering, engine::scaled(gains, factor)}, plane,
                       servo, std::span(hands[device]).first(explorations));
   };
-  std::vector<Felt> blanks(devices.size());
+  std::vector<PlaneFeatures> blanks(devices.size());
   in_parallel(jobs, devices.size(),
-              [&](std::size_t d) { blanks[d] = felt_on(d, 0, 0.0, kBlankExplorations); });
+              [&](std::size_t d) { blanks[d] = feel_on(d, 0, 0.0, kBlankExplorations); });
   std::vector<PlaneLevels> levels(devices.size() * fields.size());
   in_parallel(jobs, levels.size(), [&](std::size_t i) {
     const std::size_t d = i / fields.size();
-    const auto felt_at = [&](double gain_db) {
-      return felt_on(d, i % fields.size(), std::pow(10.0, gain_db / 20.0), kExplorations);
+    const auto feel_at = [&](double gain_db) {
+      return feel_on(d, i % fields.size(), std::pow(10.0, gain_db / 20.0), kExplorations);
     };
-    const Felt whole = felt_at(0.0);
+    const PlaneFeatures full = feel_at(0.0);
     for (std::size_t curve = 0; curve < kCurves; ++curve) {
       StimulusLevel level =
-          level_of(devices[d].name, engine::kThresholdCurves[curve], whole, &blanks[d]);
-      Detector person(subject, blanks[d].features[curve], whole.features[curve]);
-      std::optional<double> threshold_db = person.threshold_db();
-      if (threshold_db && std::abs(*threshold_db) < kTrustedDb) {
+          level_of(devices[d].name, engine::kThresholdCurves[curve], full, &blanks[d]);
+      Detector detector(subject, blanks[d].features[curve], full.features[curve]);
+      std::optional<double> threshold_db = detector.threshold_db();
+      if (threshold_db && std::abs(*threshold_db) < kMaxRefinedDb) {
         // A hand with friction and mass is not linear, so the estimate is refined near the
         // threshold.
-        person.add(*threshold_db, felt_at(*threshold_db).features[curve]);
-        threshold_db = person.threshold_db();
+        detector.set_texture(*threshold_db, feel_at(*threshold_db).features[curve]);
+        threshold_db = detector.threshold_db();
       }
       level.db = threshold_db ? -*threshold_db : kNoLevelDb;
       levels[i].push_back(std::move(level));
@@ -320,21 +326,21 @@ StimulusLevels levels_of(const study::StudyCodes& key, const session::StimulusSo
                          std::uint64_t seed) {
   StimulusLevels result;
   std::vector<engine::FieldWithGains> fields;
-  const LabelledFields all(key, source);
-  for (const LabelledField& labelled : all.all()) {
+  const LabelledFields labelled_fields(key, source);
+  for (const LabelledField& labelled : labelled_fields.all()) {
     result.stimuli.push_back(labelled.stimulus);
     fields.push_back(source.field(key.code_of(labelled.stimulus)));
   }
-  FieldLevels found = levels_of_fields(fields, key.study, devices, jobs, seed);
-  result.levels = std::move(found.levels);
-  result.blank = std::move(found.blank);
+  FieldLevels field_levels = levels_of_fields(fields, key.study, devices, jobs, seed);
+  result.levels = std::move(field_levels.levels);
+  result.blank = std::move(field_levels.blank);
   return result;
 }
 
 std::string name_of_stimulus(const study::Study& study, const study::StimulusIndex& index) {
-  const study::StudyClass& shown = study.classes[index.class_index];
-  std::string name = shown.label;
-  if (shown.images.size() > 1) name += fmt::format(" {}", index.exemplar + 1);
+  const study::StudyClass& study_class = study.classes[index.class_index];
+  std::string name = study_class.label;
+  if (study_class.images.size() > 1) name += fmt::format(" {}", index.exemplar + 1);
   if (study.presented_methods() > 1) name += ", " + study.methods[index.method].label;
   return name;
 }

@@ -1,4 +1,4 @@
-/// \file The parameters of simulated participants, which subject files store.
+/// \file The parameters of simulated participants, as stored in subject files.
 /// Format: docs/planning.md and config/schema/subject.schema.json.
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace touchtrial::simulation {
 
-/// A preference for the picture of one class, independent of what is felt.
+/// A preference for the picture of one class, independent of felt features.
 struct ClassBias {
   std::string label;
   double log_odds = 0.0;
@@ -25,11 +25,11 @@ struct ClassBias {
   friend bool operator==(const ClassBias&, const ClassBias&) = default;
 };
 
-/// How participants explore, perceive, err and answer, and how they differ (`Individual` in
-/// protocols/simulation/felt_decision.hpp draws one of them).
+/// A population of participants: exploration, perception, errors, answers, and differences between
+/// them. `Individual` (protocols/simulation/felt_decision.hpp) draws one participant.
 struct SubjectModel {
-  /// The threshold curve by which accelerations of the tip are felt; empty: a flat sense of the
-  /// servo's forces, with a threshold of 2 mN.
+  /// The threshold curve for accelerations of the tip; empty: a flat sense of the servo's forces,
+  /// with a threshold of 2 mN.
   std::optional<engine::ThresholdCurve> sense{};
   /// Differences between participants: standard deviation of all their thresholds, dB, >= 0. No
   /// effect on the flat sense.
@@ -37,16 +37,16 @@ struct SubjectModel {
   /// Standard deviation of the independent noise of each felt log intensity, >= 0.
   double feature_noise = 0.0;
   /// Standard deviation of the noise common to all felt log intensities of a presentation, >= 0. It
-  /// makes the strength of a texture uncertain, whatever its pattern.
+  /// makes the strength of a texture uncertain, regardless of its pattern.
   double common_noise = 0.0;
   /// Differences between participants: both noises times exp(spread * z), z standard normal.
   double feature_noise_spread = 0.0;
   double lapse = 0.0;  ///< probability of a random answer, 0 .. 1
   /// Standard deviation between participants of the log odds of a lapse, >= 0.
   double lapse_spread = 0.0;
-  /// Log odds by which the first picture is preferred to the last; falls linearly in between.
+  /// Preference for the first picture over the last, log odds, decreasing linearly.
   double position_bias = 0.0;
-  double position_bias_spread = 0.0;  ///< its standard deviation between participants, >= 0
+  double position_bias_spread = 0.0;  ///< standard deviation between participants, >= 0
   std::vector<ClassBias> class_bias{};
   /// Standard deviation between participants of the preference for each class, >= 0.
   double class_bias_spread = 0.0;
@@ -62,8 +62,7 @@ struct SubjectModel {
   double hand_spread = 0.0;
   int training_passes = 8;  ///< explorations of each stimulus before the first trial, >= 1
   Training training = Training::shared;
-  /// Standard deviation of the error, in every felt log intensity, with which a participant
-  /// remembers a stimulus, >= 0.
+  /// Standard deviation of a participant's memory error in every log intensity of a stimulus, >= 0.
   double memory_noise = 0.0;
   Learning learning{};
   /// Differences between the blocks and visits of a participant: standard deviation of the natural
@@ -71,12 +70,12 @@ struct SubjectModel {
   double period_noise_spread = 0.0;
   SerialDependence serial{};
   Fatigue fatigue{};
-  /// Empty: thinking time is uniform from 0.8 to 4 s, independent of what is felt.
+  /// The model of thinking time. Empty: uniform from 0.8 to 4 s, independent of felt features.
   std::optional<ThoughtTime> thought{};
-  /// Empty: answers depend on what is felt.
+  /// The function by which participants answer. Empty: answers depend on felt features.
   std::optional<GivenFunction> given_function{};
 
-  /// The device; an ideal one unless a command or the study names another. Not in the file.
+  /// The device; ideal unless a command or the study names one. Not in the file.
   device::DeviceModel device{};
 
   std::string source{};  ///< the file, for error messages
@@ -87,7 +86,7 @@ struct SubjectModel {
 };
 
 /// \return the device name that sessions of this subject record (record::SessionOpening):
-///   device::words_of_simulated, or "given-function" if answers do not depend on what is felt
+///   device::simulated_device_name, or "given-function" with a given_function
 [[nodiscard]] std::string recorded_device(const SubjectModel& model);
 
 /// \return the name in subject files: "flat", "israr_2006" or "tan_1994"

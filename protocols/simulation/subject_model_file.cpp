@@ -59,11 +59,11 @@ void describe_pair(ValueIo& io, std::pair<std::string, std::string>& pair) {
 void refuse_second_swap(const JsonValue& place, const SubjectModel& model) {
   std::set<std::string> used;
   for (std::size_t i = 0; i < model.label_swap.size(); ++i) {
-    const auto& [one, other] = model.label_swap[i];
-    for (const std::string* label : {&one, &other}) {
+    const auto& [first, second] = model.label_swap[i];
+    for (const std::string* label : {&first, &second}) {
       if (used.insert(*label).second) continue;
       place.refuse_below(
-          "/label_swap/" + std::to_string(i) + (label == &one ? "/0" : "/1"),
+          "/label_swap/" + std::to_string(i) + (label == &first ? "/0" : "/1"),
           "the label " + in_quotes(*label) + " is in two pairs; use each label in one pair only");
     }
   }
@@ -71,7 +71,7 @@ void refuse_second_swap(const JsonValue& place, const SubjectModel& model) {
 
 void describe_hand(ObjectIo& io, SubjectModel& model) {
   io.choice("model", model.hand, kHands,
-            {"how they hold the stylus: a mass on a spring and a damper, or the grip that Fu and "
+            {"the grip of the stylus: a mass on a spring and a damper, or the grip that Fu and "
              "Cavusoglu measured: [hands](devices/hands.md)"});
   io.number("spread", model.hand_spread, {0.0, 1.0},
             {"stiffness, damping and mass of the hand, each times exp(spread · z)"});
@@ -106,12 +106,13 @@ void describe_fatigue(ObjectIo& io, Fatigue& fatigue) {
   io.number("noise_per_min", fatigue.noise_per_min, kShare,
             {"added to the log of noise per minute of exploration, t, since the visit began"});
   io.number("lapse_per_min", fatigue.lapse_per_min, {0.0, 10.0},
-            {.meaning = "added to the log odds of a lapse, likewise", .unit = "log odds/min"});
+            {.meaning = "added to the log odds of a lapse per minute of exploration",
+             .unit = "log odds/min"});
   io.number("recovered", fatigue.recovered, kShare, {"share of t that a break removes"});
 }
 
 void describe_thought(ObjectIo& io, ThoughtTime& thought) {
-  io.number("shift_s", thought.shift_s, {0.0, 60.0}, {"nobody is quicker"});
+  io.number("shift_s", thought.shift_s, {0.0, 60.0}, {"minimum"});
   io.number("easy_s", thought.easy_s, kMedianS,
             {"median above the shift if one picture is clearly best; at most `hard_s`"});
   io.number("hard_s", thought.hard_s, kMedianS,
@@ -131,17 +132,17 @@ void describe_thought(ObjectIo& io, ThoughtTime& thought) {
   });
 }
 
-void describe_given_function(ObjectIo& io, GivenFunction& given) {
-  io.number("threshold", given.threshold, {-200.0, 200.0},
+void describe_given_function(ObjectIo& io, GivenFunction& function) {
+  io.number("threshold", function.threshold, {-200.0, 200.0},
             {.meaning = "median over participants, in units of the level", .required = true});
-  io.number("spread", given.spread, {0.0, 100.0}, {"SD of the threshold"});
-  io.number("standard_step", given.standard_step, {-100.0, 100.0},
+  io.number("spread", function.spread, {0.0, 100.0}, {"SD of the threshold"});
+  io.number("standard_step", function.standard_step, {-100.0, 100.0},
             {"threshold of each standard minus that of the previous one"});
-  io.number("standard_spread", given.standard_spread, {0.0, 100.0},
+  io.number("standard_spread", function.standard_spread, {0.0, 100.0},
             {"SD of participants' deviations at each standard"});
-  io.number("slope", given.slope, {0.0, 1000.0, true},
-            {.meaning = "of a function of the shape in the study's grid", .required = true});
-  io.number("lapse", given.lapse, {0.0, 0.5, false, true},
+  io.number("slope", function.slope, {0.0, 1000.0, true},
+            {.meaning = "slope of a function of the shape in the study's grid", .required = true});
+  io.number("lapse", function.lapse, {0.0, 0.5, false, true},
             {"probability of a wrong answer at any level"});
 }
 
@@ -160,12 +161,13 @@ void describe_paths(ObjectIo& io, SubjectModel& model) {
 }
 
 void describe(ObjectIo& io, SubjectModel& model) {
-  io.choice("sense", model.sense, kSenses,
-            {"`flat`: the servo's forces above 2 mN; `israr_2006`, `tan_1994`: the tip's "
-             "accelerations by a [published curve](perception.md) of thresholds, the more "
-             "sensitive or the conservative one"});
+  io.choice(
+      "sense", model.sense, kSenses,
+      {"`flat`: feels the servo's forces above 2 mN; `israr_2006` (more sensitive), `tan_1994` "
+       "(conservative): feels the tip's accelerations above the thresholds of that "
+       "[published curve](perception.md)"});
   io.number("threshold_spread_db", model.threshold_spread_db, {0.0, 40.0},
-            {"all of a person's thresholds are lower by spread · z dB; no effect on `flat`"});
+            {"a person's thresholds are lower by spread · z dB; no effect on `flat`"});
   io.number("feature_noise", model.feature_noise, kNoise,
             {"SD of independent noise on the log of each felt intensity"});
   io.number("common_noise", model.common_noise, kNoise,
@@ -176,7 +178,7 @@ void describe(ObjectIo& io, SubjectModel& model) {
   io.number("lapse_spread", model.lapse_spread, kSpread,
             {.meaning = "SD of the lapse's log odds; a lapse of 0 or 1 does not vary",
              .unit = "log odds"});
-  io.part("bias", model, {"preferences for pictures, independent of what is felt"}, describe_bias);
+  io.part("bias", model, {"preferences for pictures, independent of felt features"}, describe_bias);
   io.list("label_swap", model.label_swap, {.max = kMaxLabels},
           {.meaning =
                "pairs of labels whose pictures participants swap; each label in at most one pair",
@@ -190,8 +192,8 @@ void describe(ObjectIo& io, SubjectModel& model) {
   io.integer("training_passes", model.training_passes, 1, 1000,
              {"explorations of each stimulus before the first trial"});
   io.choice("training", model.training, kTrainings,
-            {"whether all participants remember the same explorations of each stimulus, or each "
-             "their own: [Training](#training)"});
+            {"`shared`: all participants remember the same explorations of each stimulus; `own`: "
+             "each participant remembers different ones: [Training](#training)"});
   io.number("memory_noise", model.memory_noise, kNoise, {"error of each remembered log intensity"});
   io.part("learning", model.learning,
           {"noise is larger at first; its log decreases with the number of presentations"},
@@ -206,11 +208,12 @@ void describe(ObjectIo& io, SubjectModel& model) {
       "thought", model.thought,
       {"thinking time: `shift_s` plus a lognormal time; without this key, uniform from 0.8 to 4 s"},
       [](ValueIo& value, ThoughtTime& thought) { value.part(thought, describe_thought); });
-  io.optional(
-      "given_function", model.given_function,
-      {"for threshold studies: [observers who answer by a "
-       "function](thresholds.md#simulated-participants), independent of what is felt"},
-      [](ValueIo& value, GivenFunction& given) { value.part(given, describe_given_function); });
+  io.optional("given_function", model.given_function,
+              {"for threshold studies: [observers who answer by a "
+               "function](thresholds.md#simulated-participants), independent of felt features"},
+              [](ValueIo& value, GivenFunction& function) {
+                value.part(function, describe_given_function);
+              });
 }
 
 }  // namespace
@@ -222,7 +225,7 @@ std::string_view name_of_sense(const Sense& sense) noexcept {
 SubjectModel parse_subject_model(std::string_view text, const std::string& source) {
   SubjectModel model;
   model.source = source;
-  read_described(parse_strict_json(text, source), [&](ObjectIo& io) { describe(io, model); });
+  read_settings(parse_strict_json(text, source), [&](ObjectIo& io) { describe(io, model); });
   return model;
 }
 
@@ -235,7 +238,7 @@ SubjectModel load_subject_model(const std::filesystem::path& path) {
 std::string subject_model_json(const SubjectModel& model) {
   SubjectModel copy = model;
   SubjectModel defaults;
-  return json_text(nlohmann::ordered_json::parse(written_as_described(
+  return json_text(nlohmann::ordered_json::parse(described_json(
       [&](ObjectIo& io) { describe(io, copy); }, [&](ObjectIo& io) { describe(io, defaults); })));
 }
 
@@ -243,8 +246,8 @@ std::string subject_model_schema() {
   SubjectModel defaults;
   return annotated_schema(
       "Touchtrial subject model",
-      "How simulated participants explore, perceive, err and answer. Every key has a default: that "
-      "of a participant who makes no errors. SD: standard deviation between participants; z: a "
+      "How simulated participants explore, perceive, err and answer. The defaults are those of a "
+      "participant who makes no errors. SD: standard deviation between participants; z: a "
       "standard normal number, drawn for each participant.",
       R"([{"feature_noise": 0.3, "feature_noise_spread": 0.2, "lapse": 0.02},
           {"feature_noise": 0.3, "training": "own", "memory_noise": 0.1,

@@ -10,9 +10,9 @@ double margin_of(std::span<const double> support) {
   constexpr double kNone = -std::numeric_limits<double>::infinity();
   double max = kNone;
   double second = kNone;
-  for (const double one : support) {
-    second = std::max(second, std::min(one, max));
-    max = std::max(max, one);
+  for (const double value : support) {
+    second = std::max(second, std::min(value, max));
+    max = std::max(max, value);
   }
   return second == kNone ? std::numeric_limits<double>::infinity() : max - second;
 }

@@ -1,4 +1,4 @@
-/// \file How long a decision takes. Source: docs/planning.md, "Response times".
+/// \file The thinking time of a decision. Source: docs/planning.md, "Response times".
 #pragma once
 
 #include "core/random.hpp"

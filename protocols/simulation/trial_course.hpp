@@ -12,7 +12,7 @@ struct Study;
 
 namespace touchtrial::simulation {
 
-/// One presentation, without what is felt.
+/// One presentation, without its stimulus.
 struct TrialPlace {
   int block = 0;
   /// Whether the trial affects the next one. A plane without texture does not.

@@ -7,10 +7,10 @@
     >>> study = touchtrial.read("study.db")
     >>> study.report["methods"][0]["overall"]["p"]
 
-What is computed is defined in docs/method.md; docs/python.md is the manual of this package.
-Functions release Python's global lock while they compute. What a user can cause in files and
-databases is a touchtrial.Error with the program's message; a bad argument is a TypeError or
-ValueError. Warnings go to the logger "touchtrial".
+docs/method.md defines the computations; docs/python.md is the manual of this package. Functions
+release Python's global lock while they compute. Invalid files and databases raise
+touchtrial.Error with the program's message; bad arguments raise TypeError or ValueError. Warnings
+go to the logger "touchtrial".
 """
 
 from __future__ import annotations
@@ -57,10 +57,10 @@ __all__ = [
 
 @dataclass(eq=False)
 class Extraction:
-    """A texture and the stages before it, named as the files of `touchtrial extract --dump`.
+    """A texture and the stages before it, named like the files of `touchtrial extract --dump`.
 
-    A plane that was not wanted, or that the method does not have, is None. Every array owns its
-    memory, without a copy, for as long as you keep it.
+    A plane that was not requested, or that the method lacks, is None. Every array owns its memory,
+    without a copy.
     """
 
     image: Array
@@ -89,9 +89,9 @@ class Extraction:
     components: List[Tuple[float, float]]
     """Cycles per pixel and degrees of the oscillations used (tv-gabor)."""
     gap: float
-    """The relative gap that was reached (tv-gabor)."""
+    """The relative gap reached (tv-gabor)."""
     steps: int
-    """The iterations that were used (tv-gabor)."""
+    """The number of iterations (tv-gabor)."""
     converged: bool
     """False if tv-gabor stopped at max_steps."""
 
@@ -141,15 +141,15 @@ class Study:
 
     @cached_property
     def report(self) -> Dict[str, Any]:
-        """What `touchtrial report --json` prints."""
+        """The output of `touchtrial report --json`."""
         report: Dict[str, Any] = json.loads(self._native.report())
         return report
 
     @cached_property
     def columns(self) -> Dict[str, Dict[str, Array]]:
-        """The tables of `touchtrial export --format csv` by the names of their files, each as its
-        columns: int64, float64 (nan where there is nothing), or objects (None where there is
-        nothing). docs/data-dictionary.md explains them."""
+        """The tables of `touchtrial export --format csv` by file name, each as its columns: int64,
+        float64 (missing values: nan), or objects (missing values: None). docs/data-dictionary.md
+        explains them."""
         return self._native.tables()
 
     def table(self, name: str) -> "pandas.DataFrame":
@@ -158,7 +158,7 @@ class Study:
             import pandas
         except ModuleNotFoundError:
             raise ModuleNotFoundError(
-                "pandas is not installed (Debian: python3-pandas); `columns` has the same as arrays"
+                "pandas is not installed (Debian: python3-pandas); `columns` has the same data as arrays"
             ) from None
         if name not in self.columns:
             raise KeyError(f"there is no table {name}; choose among {', '.join(self.columns)}")
@@ -166,23 +166,23 @@ class Study:
 
     @cached_property
     def trials(self) -> "pandas.DataFrame":
-        """One row for each scored trial: trials.csv."""
+        """One row per scored trial: trials.csv."""
         return self.table("trials")
 
     @cached_property
     def sessions(self) -> "pandas.DataFrame":
-        """One row for each session: participants.csv."""
+        """One row per session: participants.csv."""
         return self.table("participants")
 
     @cached_property
     def participants(self) -> "pandas.DataFrame":
-        """The last session's row of each participant."""
+        """One row per participant, from the last session."""
         return self.sessions.drop_duplicates("participant", keep="last").reset_index(drop=True)
 
     def trace(self, session: int, trial: int) -> Trace:
-        """Position and force of a trial; the numbers are those of the table `trials`."""
+        """Position and force of a trial, numbered as in the table `trials`."""
         numbers = (
-            _whole(name, number, *_INT)
+            _check_int(name, number, *_INT)
             for name, number in (("session", session), ("trial", trial))
         )
         rate_hz, samples = self._native.trace(*numbers)
@@ -192,37 +192,37 @@ class Study:
 _INT = (-(2**31), 2**31 - 1)
 
 
-def _shown(value: Any) -> str:
-    """A value as text for a one-line message."""
+def _short_repr(value: Any) -> str:
+    """Formats a value for a one-line message."""
     text = " ".join(repr(value).split())
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def _whole(name: str, value: Any, low: int, high: int) -> int:
-    """A whole number, Python's or NumPy's, within its range."""
+def _check_int(name: str, value: Any, low: int, high: int) -> int:
+    """Checks a whole number, Python's or NumPy's, and its range."""
     try:
         number = operator.index(value)
     except TypeError:
-        raise TypeError(f"{name}: is {_shown(value)}, must be a whole number") from None
+        raise TypeError(f"{name}: is {_short_repr(value)}, must be a whole number") from None
     if not low <= number <= high:
         raise ValueError(f"{name}: is {number}, must be from {low} to {high}")
     return number
 
 
-def _text(name: str, value: Any) -> str:
+def _check_text(name: str, value: Any) -> str:
     if not isinstance(value, str):
-        raise TypeError(f"{name}: is {_shown(value)}, must be a text")
+        raise TypeError(f"{name}: is {_short_repr(value)}, must be a string")
     return value
 
 
-def _path(name: str, value: Any) -> bytes:
-    """A path's bytes, because file names need not be UTF-8."""
+def _path_bytes(name: str, value: Any) -> bytes:
+    """Converts a path to bytes, because file names need not be UTF-8."""
     try:
         path = os.fsencode(value)
     except TypeError:
-        raise TypeError(f"{name}: is {_shown(value)}, must be a path") from None
+        raise TypeError(f"{name}: is {_short_repr(value)}, must be a path") from None
     if b"\0" in path:
-        raise ValueError(f"{name}: has a NUL, which no path can have")
+        raise ValueError(f"{name}: contains a NUL, which paths cannot contain")
     return path
 
 
@@ -230,10 +230,10 @@ def _is_masked(array: Any) -> bool:
     return isinstance(array, np.ma.MaskedArray) and bool(np.any(array.mask))
 
 
-def _image(name: str, value: Any) -> Any:
+def _check_image(name: str, value: Any) -> Any:
     """A picture's path or samples for the native functions."""
     if isinstance(value, (str, bytes, os.PathLike)):
-        _path(name, value)
+        _path_bytes(name, value)
         return value if isinstance(value, (str, bytes)) else os.fspath(value)
     if _is_masked(value):
         raise ValueError(f"{name}: has masked samples, which would count; fill them with .filled()")
@@ -263,11 +263,11 @@ def _method(
     control: Optional[str],
     seed: Optional[int],
 ) -> _touchtrial.Method:
-    """The method's name in study files."""
+    """Builds a native method from the options of `extract`."""
     if method == "fixed" and order is None:
         raise ValueError("the method fixed needs order, 0 <= order < 1")
     if seed is not None and control in (None, "none"):
-        raise ValueError('seed has no effect here; it belongs to control="phase-scrambled"')
+        raise ValueError('seed has no effect here; it applies to control="phase-scrambled"')
     if components is not None and not isinstance(components, str):
         try:
             pairs = np.asarray(components, dtype=float)
@@ -293,20 +293,20 @@ def _method(
         "max_steps": max_steps,
         "control": control,
     }
-    given = {key: value for key, value in keys.items() if value is not None}
-    for key, value in given.items():
+    options = {key: value for key, value in keys.items() if value is not None}
+    for key, value in options.items():
         if not isinstance(value, (str, int, float, tuple, np.generic)):
-            raise TypeError(f"{key}: is {_shown(value)}, must be a number or a text")
-    return _known_method(0 if seed is None else _whole("seed", seed, 0, 2**64 - 1), **given)
+            raise TypeError(f"{key}: is {_short_repr(value)}, must be a number or a string")
+    return _parse_method(0 if seed is None else _check_int("seed", seed, 0, 2**64 - 1), **options)
 
 
 @lru_cache(maxsize=64, typed=True)
-def _known_method(seed: int, **keys: Any) -> _touchtrial.Method:
+def _parse_method(seed: int, **keys: Any) -> _touchtrial.Method:
     """Cached, because parsing options takes as long as extracting a small texture."""
-    return _touchtrial.Method(_json(keys), seed)
+    return _touchtrial.Method(_json_text(keys), seed)
 
 
-def _json(options: Dict[str, Any]) -> str:
+def _json_text(options: Dict[str, Any]) -> str:
     """JSON text for the study file's reader; accepts NumPy numbers, but no NaN."""
     pairs = options.get("components")
     if isinstance(pairs, tuple):
@@ -314,14 +314,14 @@ def _json(options: Dict[str, Any]) -> str:
     for key, value in options.items():
         if isinstance(value, (float, np.floating)) and not math.isfinite(value):
             raise ValueError(f"{key}: is {value}, must be finite")
-    return json.dumps(options, allow_nan=False, default=_plain)
+    return json.dumps(options, allow_nan=False, default=_python_number)
 
 
-def _plain(value: Any) -> Any:
+def _python_number(value: Any) -> Any:
     """Converts NumPy numbers to Python's."""
     if isinstance(value, np.generic):
         return value.item()
-    raise TypeError(f"an option is {_shown(value)}, must be a number, a text or an object of them")
+    raise TypeError(f"an option is {_short_repr(value)}, must be a number, a string or an object of them")
 
 
 def extract(
@@ -348,33 +348,33 @@ def extract(
     precision: str = "float",
     planes: Optional[Iterable[str]] = None,
 ) -> Extraction:
-    """The texture of a picture, identical to that of `touchtrial extract --dump`.
+    """Extracts the texture of a picture, identical to that of `touchtrial extract --dump`.
 
     image: a path, or samples (H, W) or (H, W, channels) of uint8 or uint16.
     method: adaptive, fixed, tv-gabor, gaussian, median, edge or luminance. The options after it are
-    the keys of a study file's method, with the same defaults; one that the method does not have is
+    the keys of a study file's method, with the same defaults; options that the method lacks are
     refused.
-    control, seed: "phase-scrambled" turns the texture into its control.
-    mapping: of texture_u8: offset, abs or stretch.
+    control, seed: "phase-scrambled" replaces the texture with a control.
+    mapping: how texture_u8 is made: offset, abs or stretch.
     neighbourhood: side of the force's neighbourhood, odd.
-    precision: "float" or "double", of all planes but the pictures.
-    planes: the planes to keep, by name, or all; texture and image are always there. What no plane
-    needs is not computed: planes=() is the fastest.
+    precision: "float" or "double", for all planes except the pictures.
+    planes: names of the planes to return, by default all; texture and image are always included.
+    Only what these need is computed: planes=() is the fastest.
     """
     if precision not in ("float", "double"):
-        raise ValueError(f'precision: is {_shown(precision)}, must be "float" or "double"')
-    known = _method(
+        raise ValueError(f'precision: is {_short_repr(precision)}, must be "float" or "double"')
+    native_method = _method(
         method, order, radius, norm, gradient, combine, levels, sigma_px, threshold, divisor,
         lambda_, components, gap, max_steps, control, seed,
     )
     return Extraction(
         **_touchtrial.extract(
-            _image("image", image),
-            known,
-            _text("mapping", mapping),
-            _whole("neighbourhood", neighbourhood, *_INT),
+            _check_image("image", image),
+            native_method,
+            _check_text("mapping", mapping),
+            _check_int("neighbourhood", neighbourhood, *_INT),
             precision == "double",
-            None if planes is None else [_text("planes", name) for name in planes],
+            None if planes is None else [_check_text("planes", name) for name in planes],
         )
     )
 
@@ -382,7 +382,7 @@ def extract(
 def order_map(image: Image, **options: Any) -> Array:
     """(H, W): the order of differentiation at each pixel, in [0, 1); `Extraction.order`.
 
-    options: of `extract`, for the methods adaptive and fixed.
+    options: those of `extract`, for the methods adaptive and fixed.
     """
     order = extract(image, planes=("order",), **options).order
     if order is None:
@@ -413,26 +413,27 @@ def force_fields(
 ) -> List[Field]:
     """The force fields of several textures with common gains, like a study's stimuli.
 
-    sources: each a picture (as of `extract`; its texture is extracted in double precision, as
-    studies do), an Extraction, or a texture, which is an array (H, W) of floating-point grey levels.
+    sources: each a picture as in `extract` (its texture is extracted in double precision, as in
+    studies), an Extraction, or a texture, which is an array (H, W) of floating-point grey levels.
     rendering: a study file's "rendering" object (docs/study-file.md), with the same defaults.
-    The options after it are those of `extract`, for pictures.
+    The other options are those of `extract`, for pictures.
     """
-    known = _method(
+    native_method = _method(
         method, order, radius, norm, gradient, combine, levels, sigma_px, threshold, divisor,
         lambda_, components, gap, max_steps, control, seed,
     )
     textures = [
-        one.texture if isinstance(one, Extraction) else _image("source", one) for one in sources
+        source.texture if isinstance(source, Extraction) else _check_image("source", source)
+        for source in sources
     ]
     options = (
         order, radius, norm, gradient, combine, levels, sigma_px, threshold, divisor, lambda_,
         components, gap, max_steps, control, seed,
     )
-    is_asked = method != "adaptive" or any(option is not None for option in options)
-    if is_asked and not any(_is_picture(texture) for texture in textures):
+    has_options = method != "adaptive" or any(option is not None for option in options)
+    if has_options and not any(_is_picture(texture) for texture in textures):
         raise ValueError("method and its options have no effect: every source is a texture already")
-    return _touchtrial.force_fields(textures, known, _json(dict(rendering or {})))
+    return _touchtrial.force_fields(textures, native_method, _json_text(dict(rendering or {})))
 
 
 def force_field(
@@ -451,18 +452,18 @@ def render(
     dt_s: Optional[float] = None,
     velocities_mm_s: Optional[npt.ArrayLike] = None,
 ) -> Array:
-    """(N, 3) newtons: the force on a stylus along a path, by the servo's rendering model.
+    """Computes the force on a stylus along a path, (N, 3) newtons, by the servo's rendering model.
 
     path_mm: (N, 3), x and y from the plane's top-left corner, z out of the plane; depth is -z.
-    dt_s: the time between two positions, from which velocities follow by backward differences (the
-    first is 0). Or velocities_mm_s: (N, 3). Without either the hand counts as still, which matters
-    if the wall has damping. Friction carries over from position to position. A position or velocity
-    that is not finite gives no force.
+    dt_s: the time between two positions, for velocities by backward differences (the first is 0).
+    velocities_mm_s: (N, 3), instead of dt_s. Without either, velocities are 0, which matters if the
+    wall has damping. Friction carries over from position to position. Positions and velocities that
+    are not finite give no force.
     """
     if not isinstance(field, Field):
-        raise TypeError(f"field: is {_shown(field)}, must be a Field, as force_field makes it")
+        raise TypeError(f"field: is {_short_repr(field)}, must be a Field from force_field or force_fields")
     if dt_s is not None and not isinstance(dt_s, (int, float, np.integer, np.floating)):
-        raise TypeError(f"dt_s: is {_shown(dt_s)}, must be a number")
+        raise TypeError(f"dt_s: is {_short_repr(dt_s)}, must be a number")
     for name, points in (("path_mm", path_mm), ("velocities_mm_s", velocities_mm_s)):
         if _is_masked(points):
             raise ValueError(f"{name}: has masked points, which would count; fill them with .filled()")
@@ -472,13 +473,13 @@ def render(
 def evaluate(*images: Image, sweep: bool = False) -> Dict[str, Any]:
     """Entropy and co-occurrence statistics of pictures and their adaptive textures.
 
-    sweep: also the order sweep with MS-SSIM.
-    Returns what `touchtrial evaluate --json` prints; docs/data-dictionary.md explains it. A picture
-    that is no file is called "array 0", by its place.
+    sweep: whether to add the order sweep with MS-SSIM.
+    Returns the output of `touchtrial evaluate --json`; docs/data-dictionary.md explains it. An array
+    is named by its index, for instance "array 0".
     """
     if not isinstance(sweep, (bool, np.bool_)):
-        raise TypeError(f"sweep: is {_shown(sweep)}, must be True or False")
-    pictures = [_image(f"array {place}", one) for place, one in enumerate(images)]
+        raise TypeError(f"sweep: is {_short_repr(sweep)}, must be True or False")
+    pictures = [_check_image(f"array {index}", image) for index, image in enumerate(images)]
     evaluation: Dict[str, Any] = json.loads(_touchtrial.evaluate(pictures, bool(sweep)))
     return evaluation
 
@@ -486,20 +487,20 @@ def evaluate(*images: Image, sweep: bool = False) -> Dict[str, Any]:
 def read(db: Path, key: Optional[Path] = None, *, passphrase: Optional[str] = None) -> Study:
     """Opens an unblinded study: a database file.
 
-    key: the study's key, by default DB.key or the one that was named last time.
-    passphrase: of a protected key.
-    Raises touchtrial.Error if the study is not unblinded, or its evidence does not hold.
+    key: the study's key, by default DB.key or the one used last.
+    passphrase: the passphrase of a protected key.
+    Raises touchtrial.Error if the study is not unblinded or fails verification.
     """
     if passphrase is not None:
-        _text("passphrase", passphrase)
-    place = _path("db", db)
+        _check_text("passphrase", passphrase)
+    database = _path_bytes("db", db)
     try:
-        return Study(_touchtrial.read(place, b"" if key is None else _path("key", key), passphrase))
+        return Study(_touchtrial.read(database, b"" if key is None else _path_bytes("key", key), passphrase))
     except Error as error:
-        what, option, _ = str(error).partition("--passphrase-file")
+        message, option, _ = str(error).partition("--passphrase-file")
         if not option:
             raise
-        raise Error(what.rpartition("; ")[0] + "; give it as passphrase=") from None
+        raise Error(message.rpartition("; ")[0] + "; give it as passphrase=") from None
 
 
 def simulate(
@@ -516,22 +517,22 @@ def simulate(
 ) -> Dict[str, Any]:
     """Runs a whole study with simulated participants, in virtual time; `read` then opens it.
 
-    study: its file. db: the database to make; its key is written to DB.key.
-    subject: a subject model, by default the program's. on: what simulated hands hold.
-    jobs: threads, by default one for each core; results do not depend on them.
+    study: the study file. db: the database to create; its key is written to DB.key.
+    subject: a subject model, by default the built-in one. on: the device of the simulated hands.
+    jobs: threads, by default one per core; results do not depend on their number.
     keep_blind: neither close nor unblind the study at the end.
-    Returns what `touchtrial simulate --json` prints.
+    Returns the output of `touchtrial simulate --json`.
     """
     summary: Dict[str, Any] = json.loads(
         _touchtrial.simulate(
-            _path("study", study),
-            _path("db", db),
-            _whole("participants", participants, 1, 100_000),
-            _whole("seed", seed, 0, 2**64 - 1),
-            b"" if subject is None else _path("subject", subject),
-            "" if on is None else _text("on", on),
-            0 if jobs is None else _whole("jobs", jobs, 1, 1024),
-            _whole("first_participant", first_participant, 1, 1_000_000),
+            _path_bytes("study", study),
+            _path_bytes("db", db),
+            _check_int("participants", participants, 1, 100_000),
+            _check_int("seed", seed, 0, 2**64 - 1),
+            b"" if subject is None else _path_bytes("subject", subject),
+            "" if on is None else _check_text("on", on),
+            0 if jobs is None else _check_int("jobs", jobs, 1, 1024),
+            _check_int("first_participant", first_participant, 1, 1_000_000),
             bool(keep_blind),
         )
     )

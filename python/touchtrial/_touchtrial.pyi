@@ -46,7 +46,7 @@ class Field:
     def over_budget(self) -> bool:
         """Whether explicit gains exceed the stiffness budget."""
     def lateral_force(self) -> npt.NDArray[np.float64]:
-        """(H, W, 2) newtons at the pixels' centres, x then y, before the limit of the force; for
+        """(H, W, 2) newtons at the pixels' centres, x then y, before the force limit is applied; for
         surface at a load of 0.7 N."""
     def statistics(self) -> Dict[str, Any]:
         """Numbers that predict how the field feels; docs/method.md defines them."""

@@ -16,10 +16,10 @@ namespace {
 constexpr std::string_view kMagic = "touchtrial bundle 1";
 static_assert(std::endian::native == std::endian::little);
 
-/// Little-endian numbers of eight bytes, and byte strings after their length.
-class Packing {
+/// Writes little-endian numbers of eight bytes, and byte strings after their lengths.
+class BundleWriter {
  public:
-  Packing() { part(bytes_of(kMagic)); }
+  BundleWriter() { part(bytes_of(kMagic)); }
 
   void number(std::int64_t number) { raw({reinterpret_cast<const std::uint8_t*>(&number), 8}); }
   void part(ByteView bytes) {
@@ -37,9 +37,9 @@ class Packing {
     part(event.signature);
   }
   [[nodiscard]] Bytes compressed() const {
-    Bytes packed(ZSTD_compressBound(bytes_.size()));
-    packed.resize(ZSTD_compress(packed.data(), packed.size(), bytes_.data(), bytes_.size(), 3));
-    return packed;
+    Bytes frame(ZSTD_compressBound(bytes_.size()));
+    frame.resize(ZSTD_compress(frame.data(), frame.size(), bytes_.data(), bytes_.size(), 3));
+    return frame;
   }
 
  private:
@@ -51,19 +51,19 @@ class Packing {
   throw StoreError("is not a bundle of this version of Touchtrial");
 }
 
-class Unpacking {
+class BundleReader {
  public:
-  /// The size in a frame is checked before memory is allocated for it.
-  explicit Unpacking(ByteView frame) {
+  /// Checks the size in a frame before it allocates memory.
+  explicit BundleReader(ByteView frame) {
     const unsigned long long size = ZSTD_getFrameContentSize(frame.data(), frame.size());
-    if (size > kMaxBundleBytes) refuse_bytes();  // so are the codes of errors
+    if (size > kMaxBundleBytes) refuse_bytes();  // error codes are larger, too
     content_.resize(size);
     if (ZSTD_decompress(content_.data(), size, frame.data(), frame.size()) != size) refuse_bytes();
-    rest_ = content_;
+    remaining_ = content_;
     if (text_of(part()) != kMagic) refuse_bytes();
   }
 
-  [[nodiscard]] bool at_end() const { return rest_.empty(); }
+  [[nodiscard]] bool at_end() const { return remaining_.empty(); }
   [[nodiscard]] std::int64_t number() {
     std::int64_t number = 0;
     std::memcpy(&number, next(sizeof number).data(), sizeof number);
@@ -89,43 +89,43 @@ class Unpacking {
 
  private:
   ByteView next(std::uint64_t size) {
-    if (size > rest_.size()) refuse_bytes();
-    const ByteView bytes = rest_.first(size);
-    rest_ = rest_.subspan(size);
+    if (size > remaining_.size()) refuse_bytes();
+    const ByteView bytes = remaining_.first(size);
+    remaining_ = remaining_.subspan(size);
     return bytes;
   }
   Bytes content_;
-  ByteView rest_;
+  ByteView remaining_;
 };
 
 }  // namespace
 
-Bytes packed(const BundleHalf& half) {
-  Packing packing;
-  // No key is empty.
-  packing.part(half.keys.participant.value_or(Bytes()));
-  packing.part(half.keys.safety.value_or(Bytes()));
-  packing.number(std::ssize(half.events));
-  for (const record::Event& event : half.events) packing.event(event);
+Bytes pack_bundle(const BundleHalf& half) {
+  BundleWriter writer;
+  // An empty part stands for a missing key, because no key is empty.
+  writer.part(half.keys.participant.value_or(Bytes()));
+  writer.part(half.keys.safety.value_or(Bytes()));
+  writer.number(std::ssize(half.events));
+  for (const record::Event& event : half.events) writer.event(event);
   for (const auto& [trial, box] : half.traces) {
-    packing.number(trial);
-    packing.part(box);
+    writer.number(trial);
+    writer.part(box);
   }
-  return packing.compressed();
+  return writer.compressed();
 }
 
-BundleHalf unpacked(ByteView bytes, int session) {
-  Unpacking unpacking(bytes);
+BundleHalf unpack_bundle(ByteView bytes, int session) {
+  BundleReader reader(bytes);
   BundleHalf half;
   for (std::optional<Bytes>* const key : {&half.keys.participant, &half.keys.safety}) {
-    if (Bytes part = unpacking.part(); !part.empty()) *key = std::move(part);
+    if (Bytes part = reader.part(); !part.empty()) *key = std::move(part);
   }
-  for (std::int64_t left = unpacking.number(); left > 0; --left) {
-    half.events.push_back(unpacking.event(session));
+  for (std::int64_t left = reader.number(); left > 0; --left) {
+    half.events.push_back(reader.event(session));
   }
-  while (!unpacking.at_end()) {
-    const auto trial = static_cast<int>(unpacking.number());
-    half.traces.emplace_back(trial, unpacking.part());
+  while (!reader.at_end()) {
+    const auto trial = static_cast<int>(reader.number());
+    half.traces.emplace_back(trial, reader.part());
   }
   return half;
 }

@@ -1,6 +1,6 @@
 /// \file One row of a station on a server, in two halves: a part of the station's file chain, and
-/// the session that this part closes, as the station wrote them, compressed with zstd. The content
-/// is not trusted: merging checks it like a file. Format: docs/data-dictionary.md, "Bundles".
+/// the session that this part closes, compressed with zstd. The content is not trusted: merging
+/// checks it like a file. Format: docs/data-dictionary.md, "Bundles".
 /// Private to record/merging.
 #pragma once
 
@@ -19,15 +19,15 @@ inline constexpr std::size_t kMaxBundleBytes = std::size_t{128} << 20U;
 
 struct BundleHalf {
   std::vector<record::Event> events;            ///< of the chain or the session
-  record::WrappedKeys keys{};                   ///< the session's
-  std::vector<std::pair<int, Bytes>> traces{};  ///< likewise, by trial
+  record::WrappedKeys keys{};                   ///< of the session
+  std::vector<std::pair<int, Bytes>> traces{};  ///< of the session, by trial
 };
 
-[[nodiscard]] Bytes packed(const BundleHalf& half);
+[[nodiscard]] Bytes pack_bundle(const BundleHalf& half);
 
-/// Takes time and memory in proportion to kMaxBundleBytes, whatever the bytes are.
-/// \param session  the events'; 0: the file's chain
+/// Time and memory are limited by kMaxBundleBytes, whatever the bytes are.
+/// \param session  the events' session; 0: the file's chain
 /// \throws StoreError if the bytes were not packed by this program
-[[nodiscard]] BundleHalf unpacked(ByteView bytes, int session);
+[[nodiscard]] BundleHalf unpack_bundle(ByteView bytes, int session);
 
 }  // namespace touchtrial::merging

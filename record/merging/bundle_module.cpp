@@ -9,12 +9,12 @@
 namespace touchtrial::merging {
 
 std::unique_ptr<BundleTable> open_bundle_table(const std::string& address) {
-  std::error_code unknown;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path();
+  std::error_code ignored;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
   void* module = nullptr;
-  // Its paths in the build and after installation.
+  // The module's folders in the build and after installation.
   for (const char* const folder : {".", "../lib/touchtrial"}) {
-    // Never unloaded: its exceptions may outlive the table.
+    // The module is never unloaded, because its exceptions may outlive the table.
     const auto path = program / folder / "touchtrial_postgres.so";
     if (module == nullptr) module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
   }

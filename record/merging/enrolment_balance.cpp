@@ -17,7 +17,7 @@ bool is_uneven(const std::map<int, int>& counts) {
 }
 
 void add_gaps(EnrolmentBalance& balance, const std::set<int>& taken) {
-  // The highest number may be absurd, so the loop below ends with the list.
+  // The highest number may be very large, so the loop stops when the list is full.
   const auto below = std::distance(taken.begin(), taken.lower_bound(balance.highest));
   balance.gap_count = std::max(balance.highest - 1, 0) - static_cast<int>(below);
   for (int number = 1; number < balance.highest && balance.gaps.size() < kMaxGaps; ++number) {
@@ -65,7 +65,8 @@ EnrolmentBalance enrolment_balance(std::span<const EnrolledSession> sessions) {
 std::vector<std::string> imbalances(const EnrolmentBalance& balance) {
   std::vector<std::string> lines;
   if (is_uneven(balance.stations)) {
-    lines.push_back("complete sessions differ over the stations: " + listed_stations(balance));
+    lines.push_back("numbers of complete sessions differ between stations: " +
+                    listed_stations(balance));
   }
   if (balance.gap_count > 0) lines.push_back(gaps_line(balance));
   return lines;

@@ -1,4 +1,4 @@
-/// \file Whether enrolment is balanced over a study's stations and enrolment numbers.
+/// \file Checks whether enrolment is balanced over a study's stations and enrolment numbers.
 #pragma once
 
 #include "record/study_store.hpp"
@@ -15,17 +15,17 @@ struct EnrolledSession {
   int station = 0;  ///< from 1
   int enrolment = 0;
   record::SessionState state{};
-  bool counts = true;  ///< neither excluded nor withdrawn nor replaced
+  bool counts = true;  ///< whether it is neither excluded nor withdrawn nor replaced
 };
 
 struct EnrolmentBalance {
-  /// Number of sessions that are complete and count, by station; a station may have 0.
+  /// Number of complete sessions that count, by station; may be 0.
   std::map<int, int> stations;
   /// Enrolment numbers below the highest without a complete session that counts, ascending; at most
   /// kMaxGaps.
   std::vector<int> gaps;
   int gap_count = 0;
-  int highest = 0;  ///< enrolment number, of all sessions
+  int highest = 0;  ///< highest enrolment number of all sessions
 };
 
 inline constexpr std::size_t kMaxGaps = 20;

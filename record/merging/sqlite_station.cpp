@@ -1,4 +1,4 @@
-// Stations that are SQLite files, or were collected into one.
+// Stations whose data are in an SQLite file: the station's own, or a collected one.
 #include "record/collected_chain.hpp"
 #include "record/damage.hpp"
 #include "record/merging/stations.hpp"
@@ -14,7 +14,7 @@ namespace {
 
 class SqliteStation final : public StationFile {
  public:
-  /// \param station  0: the file is a station's own
+  /// \param station  number in a collected file; 0: the file is the station's own
   SqliteStation(std::shared_ptr<const record::StudyStore> store, const std::string& file,
                 int station)
       : store_(std::move(store)),
@@ -57,11 +57,12 @@ class SqliteStation final : public StationFile {
   std::shared_ptr<const record::StudyStore> store_;
   int station_;
   std::string name_;
-  std::map<int, int> sessions_;  ///< number in the file, by own number
+  std::map<int, int> sessions_;  ///< numbers in the file, by number at the station
 };
 
 /// Refuses a collected file with later decisions: collecting again would lose them.
-void refuse_own_decisions(const record::StudyStore& store, const std::filesystem::path& database) {
+void refuse_later_decisions(const record::StudyStore& store,
+                            const std::filesystem::path& database) {
   std::vector<record::StationChain> chains;
   for (int station = 1; station <= store.stations(); ++station) {
     chains.push_back({.name = "", .events = store.station_chain(station)});
@@ -70,9 +71,9 @@ void refuse_own_decisions(const record::StudyStore& store, const std::filesystem
   const std::vector<record::Event> events = store.events(0);
   if (events.size() == collected) return;
   throw StoreError(one_line(
-      fmt::format("{}: was collected from stations, and then '{}' was recorded in it, which no "
-                  "other file would have; record that at the station, or after the last merge, "
-                  "and merge the stations' own files",
+      fmt::format("{}: was collected from stations, and then '{}' was recorded in it, which would "
+                  "be lost; record that at the station, or after the last merge, and merge the "
+                  "stations' own files",
                   database.string(), record::name_of(events[collected].kind))));
 }
 
@@ -84,11 +85,11 @@ Stations stations_of_file(const std::filesystem::path& database, record::TraceCh
   if (const auto fault = store->first_fault(traces)) {
     throw record::DamagedStore(one_line(fmt::format(
         "{}: {}, event {}: {}; restore it from a backup, or leave it out", database.string(),
-        record::chain_named(fault->session), fault->sequence, fault->what)));
+        record::chain_name(fault->session), fault->sequence, fault->what)));
   }
   Stations stations;
   const int count = store->stations();
-  if (count > 0) refuse_own_decisions(*store, database);
+  if (count > 0) refuse_later_decisions(*store, database);
   for (int station = count > 0 ? 1 : 0; station <= count; ++station) {
     stations.push_back(std::make_unique<SqliteStation>(store, database.string(), station));
   }

@@ -1,4 +1,4 @@
-/// \file The positions of crops. Private to stimuli/import.
+/// \file Plans the positions of crops in photographs. Private to stimuli/import.
 #pragma once
 
 #include "core/plane.hpp"
@@ -22,37 +22,38 @@ struct PhotoPart {
   PhotoSize size_px;
 };
 
-/// The part of a photograph without a pixel of 0: one of at least `min_px` by `min_px` if there
-/// is any, and of these the largest.
-/// \return no pixels if all are 0
+/// The largest opaque rectangle of a photograph; prefers rectangles of at least `min_px` by
+/// `min_px`.
+/// \return an empty part if no pixel is opaque
 [[nodiscard]] PhotoPart opaque_part(const GreyImage& opacity, int min_px);
 
-/// The pixels of a part that lies within the image.
-[[nodiscard]] GreyImage cut(const GreyImage& image, const PhotoPart& part);
+/// The pixels of a part of the image.
+[[nodiscard]] GreyImage crop_image(const GreyImage& image, const PhotoPart& part);
 
 /// The top-left corner of a square crop.
-struct CropPlace {
+struct CropPosition {
   int y = 0;
   int x = 0;
 
-  friend bool operator==(const CropPlace&, const CropPlace&) = default;
+  friend bool operator==(const CropPosition&, const CropPosition&) = default;
 };
 
-/// The number of squares that fit on a grid without sharing a pixel.
+/// The number of squares that fit on a grid without overlap.
 [[nodiscard]] int separate_crops(PhotoSize photo, int side_px);
 
-/// The number of squares that fit if neighbours share at most half their side.
+/// The number of squares that fit if neighbours overlap by at most half their side.
 [[nodiscard]] int overlapping_crops(PhotoSize photo, int side_px);
 
-/// Different places: separate and at random distances if there is room, otherwise spread evenly
-/// with as little overlap as possible.
+/// Distinct positions of crops: separate and at random distances if there is room, otherwise evenly
+/// spread with minimal overlap.
 /// \param count  0 .. overlapping_crops()
-[[nodiscard]] std::vector<CropPlace> crop_places(PhotoSize photo, int side_px, int count,
-                                                 RandomStream& random);
+[[nodiscard]] std::vector<CropPosition> crop_positions(PhotoSize photo, int side_px, int count,
+                                                       RandomStream& random);
 
-/// The number of crops of each photograph of a class: as even as possible, first without overlap.
-/// \return empty if even overlapping crops are too few
-[[nodiscard]] std::vector<int> crop_shares(std::span<const PhotoSize> photos, int side_px,
-                                           int count);
+/// The number of crops from each photograph of a class, as equal as possible, preferring crops
+/// without overlap.
+/// \return empty if there is not enough room even with overlap
+[[nodiscard]] std::vector<int> distribute_crops(std::span<const PhotoSize> photos, int side_px,
+                                                int count);
 
 }  // namespace touchtrial::stimuli

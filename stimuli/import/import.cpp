@@ -19,14 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-ImportOptions completed(ImportOptions options) {
+ImportOptions with_default_paths(ImportOptions options) {
   if (options.pictures.empty()) options.pictures = default_pictures_folder(options.study);
   // A trailing slash gives an empty file name, and the parent path is the folder itself.
   if (!options.pictures.has_filename()) options.pictures = options.pictures.parent_path();
   return options;
 }
 
-/// A name that suits file names, tables and BIDS labels.
+/// A name valid in file names, tables and BIDS labels.
 std::string study_name(const fs::path& study) {
   constexpr std::size_t kMaxBytes = 64;
   std::string name = study.stem().string().substr(0, kMaxBytes);
@@ -40,23 +40,24 @@ std::string study_name(const fs::path& study) {
   return name;
 }
 
-/// Finds photographs whose bytes or pixels equal those of an earlier one.
+/// Finds photographs that have the same bytes or pixels as an earlier one.
 class Duplicates {
  public:
-  /// \return the fault; empty if none
+  /// \return the fault; empty if there is none
   std::string fault_of(const Photograph& photo) {
-    std::string same = fault_of(photo.sha256, photo.path, "is the same file as ");
-    return same.empty() ? fault_of(photo.pixels_sha256, photo.path, "has the same pixels as ")
-                        : same;
+    std::string fault = fault_of(photo.sha256, photo.path, "is the same file as ");
+    return fault.empty() ? fault_of(photo.pixels_sha256, photo.path, "has the same pixels as ")
+                         : fault;
   }
 
  private:
-  std::string fault_of(const Digest& digest, const fs::path& path, const char* what) {
-    const auto [first, is_new] = seen_.emplace(digest, path);
+  std::string fault_of(const Digest& digest, const fs::path& path, const char* relation) {
+    const auto [first, is_new] = paths_by_digest_.emplace(digest, path);
     if (is_new) return {};
-    return one_line(path.string() + ": " + what + first->second.string() + "; remove one of them");
+    return one_line(path.string() + ": " + relation + first->second.string() +
+                    "; remove one of them");
   }
-  std::map<Digest, fs::path> seen_;
+  std::map<Digest, fs::path> paths_by_digest_;
 };
 
 /// Whether all of a folder's files are unchanged outputs of this program.
@@ -67,83 +68,84 @@ bool are_unchanged_outputs(const fs::path& folder) {
   return true;
 }
 
-/// Replaces a folder of earlier pictures by new ones, and restores them unless `keep` is called. A
-/// folder with foreign or changed files is renamed.
-class NewPictures {
+/// Replaces a folder of earlier pictures, and restores them in the destructor unless `commit` was
+/// called. Renames a folder with foreign or changed files.
+class PictureReplacement {
  public:
-  NewPictures(Draft& draft, const fs::path& place) : place_(place) {
-    if (is_there(place_) && !are_unchanged_outputs(place_)) clear_output_place(place_);
-    if (is_there(place_)) earlier_ = move_aside(place_);
+  PictureReplacement(Draft& draft, const fs::path& path) : path_(path) {
+    if (path_exists(path_) && !are_unchanged_outputs(path_)) clear_output_path(path_);
+    if (path_exists(path_)) earlier_path_ = move_aside(path_);
     if (draft.rename_if_free()) return;
-    throw FileError(one_line(place_.string()) + ": another program makes it; try again");
+    throw FileError(one_line(path_.string()) + ": is being created by another program; try again");
   }
-  ~NewPictures() {
+  ~PictureReplacement() {
     std::error_code ignored;
-    if (is_kept_) return;
-    fs::remove_all(place_, ignored);
-    if (!earlier_.empty()) fs::rename(earlier_, place_, ignored);
+    if (is_committed_) return;
+    fs::remove_all(path_, ignored);
+    if (!earlier_path_.empty()) fs::rename(earlier_path_, path_, ignored);
   }
-  NewPictures(const NewPictures&) = delete;
-  NewPictures& operator=(const NewPictures&) = delete;
+  PictureReplacement(const PictureReplacement&) = delete;
+  PictureReplacement& operator=(const PictureReplacement&) = delete;
 
-  /// Called when nothing can fail any more; removes the earlier pictures.
-  void keep() noexcept {
-    is_kept_ = true;
+  /// Keeps the new pictures and removes the earlier ones.
+  void commit() noexcept {
+    is_committed_ = true;
     std::error_code ignored;
-    if (!earlier_.empty()) fs::remove_all(earlier_, ignored);
+    if (!earlier_path_.empty()) fs::remove_all(earlier_path_, ignored);
   }
 
  private:
-  fs::path place_;
-  fs::path earlier_;  ///< where they are now; empty if there were none
-  bool is_kept_ = false;
+  fs::path path_;
+  fs::path earlier_path_;  ///< new path of the earlier pictures; empty if there were none
+  bool is_committed_ = false;
 };
 
-/// One run: reads each photograph once to check it, and again to cut it.
+/// One import. Reads each photograph once to check it, and again to crop it.
 class Import {
  public:
   Import(const ImportOptions& options, const ImportProgress& progress)
-      : options_(completed(options)), progress_(progress) {}
+      : options_(with_default_paths(options)), progress_(progress) {}
 
-  /// Runs all steps that only read.
+  /// Runs all steps that do not write.
   void check_inputs() {
-    const PhotoFolder folder = surveyed();
-    const auto shares = plan_shares(classes_, small_, options_);
-    cut_all({}, shares);
+    const PhotoFolder folder = survey();
+    const auto crop_counts = plan_crops(classes_, size_faults_, options_);
+    crop_all({}, crop_counts);
   }
 
   ImportReport run() {
     check_import(options_);
-    PhotoFolder folder = surveyed();
-    const auto shares = plan_shares(classes_, small_, options_);
+    PhotoFolder folder = survey();
+    const auto crop_counts = plan_crops(classes_, size_faults_, options_);
     Draft draft(options_.pictures, Draft::Kind::folder);
-    cut_all(draft.path(), shares);
+    crop_all(draft.path(), crop_counts);
     equalise(draft.path());
-    ImportReport result = report(std::move(folder.ignored), shares);
+    ImportReport result = report(std::move(folder.ignored), crop_counts);
     finish(draft, result.warnings);
     return result;
   }
 
  private:
-  PhotoFolder surveyed() {
+  PhotoFolder survey() {
     PhotoFolder folder = list_photographs(options_.photographs, options_.names);
     if (folder.faults.empty()) check_classes(folder, options_);
     total_ = 0;
-    for (const PhotoClass& one : folder.classes) total_ += 2 * static_cast<int>(one.files.size());
+    for (const PhotoClass& photo_class : folder.classes)
+      total_ += 2 * static_cast<int>(photo_class.files.size());
     check_photographs(folder);
     return folder;
   }
 
-  /// Photographs are read on all cores, and checked in order.
+  /// Reads photographs on all cores and checks them in order.
   void check_photographs(const PhotoFolder& folder) {
     std::vector<fs::path> files;
-    for (const PhotoClass& one : folder.classes) {
-      files.insert(files.end(), one.files.begin(), one.files.end());
+    for (const PhotoClass& photo_class : folder.classes) {
+      files.insert(files.end(), photo_class.files.begin(), photo_class.files.end());
     }
     std::vector<Photograph> photographs(files.size());
     std::vector<PhotoSize> sizes(files.size());
     std::vector<std::string> faults(files.size());
-    all_in_parallel(files.size(), [&](std::size_t i) {
+    run_all_in_parallel(files.size(), [&](std::size_t i) {
       try {
         photographs[i] = read_photograph(files[i], options_);
       } catch (const FileError& error) {
@@ -151,32 +153,32 @@ class Import {
       }
       sizes[i] = {photographs[i].image.height(), photographs[i].image.width()};
       photographs[i].image = {};
-      note_done();
+      report_progress();
     });
     Duplicates duplicates;
     for (std::size_t i = 0; i < files.size(); ++i) {
       if (!faults[i].empty()) continue;
       faults[i] = duplicates.fault_of(photographs[i]);
       const std::string fault = fault_of_size(photographs[i], sizes[i], options_);
-      if (!fault.empty()) small_.push_back(fault);
+      if (!fault.empty()) size_faults_.push_back(fault);
     }
     std::erase(faults, "");
     faults.insert(faults.begin(), folder.faults.begin(), folder.faults.end());
     if (!faults.empty()) {
-      for (const std::string& fault : small_) {
+      for (const std::string& fault : size_faults_) {
         faults.push_back(fault + "; give a smaller --size, or a larger photograph");
       }
       throw UnusablePhotographs(options_.photographs, std::move(faults));
     }
     std::size_t i = 0;
-    for (const PhotoClass& one : folder.classes) {
-      SizedClass sized{one.label, one.files, {}};
-      for (const fs::path& file : one.files) {
-        sized.sizes.push_back(sizes[i]);
+    for (const PhotoClass& photo_class : folder.classes) {
+      SizedClass sized_class{photo_class.label, photo_class.files, {}};
+      for (const fs::path& file : photo_class.files) {
+        sized_class.sizes.push_back(sizes[i]);
         record_.photographs.push_back({name_of(file), std::move(photographs[i]), sizes[i]});
         ++i;
       }
-      classes_.push_back(std::move(sized));
+      classes_.push_back(std::move(sized_class));
     }
   }
 
@@ -185,76 +187,76 @@ class Import {
     return file.lexically_relative(options_.photographs).generic_string();
   }
 
-  /// A photograph to cut, and the places of its crops in the set.
-  struct Cut {
-    const SizedClass* of_class;
+  /// A photograph to crop, and the indices of its crops.
+  struct CropJob {
+    const SizedClass* photo_class;
     fs::path file;
     std::size_t photograph;
     std::size_t first_picture;
-    int first_number;  ///< of its class, from 1
+    int first_number;  ///< within the class, from 1
     int count;
   };
 
-  /// Cuts all photographs on all cores. A crop's name does not depend on the order of cutting.
-  /// \param draft  empty: the crops are only checked
-  void cut_all(const fs::path& draft, const std::vector<std::vector<int>>& shares) {
-    std::vector<Cut> cuts;
+  /// Crops all photographs on all cores. Names of crops do not depend on the order.
+  /// \param draft  empty: only checks the crops
+  void crop_all(const fs::path& draft, const std::vector<std::vector<int>>& crop_counts) {
+    std::vector<CropJob> jobs;
     std::size_t photograph = 0;
     std::size_t pictures = 0;
     for (std::size_t c = 0; c < classes_.size(); ++c) {
       int number = 1;
       for (std::size_t i = 0; i < classes_[c].files.size(); ++i, ++photograph) {
-        cuts.push_back(
-            {&classes_[c], classes_[c].files[i], photograph, pictures, number, shares[c][i]});
-        number += shares[c][i];
-        pictures += static_cast<std::size_t>(shares[c][i]);
+        jobs.push_back(
+            {&classes_[c], classes_[c].files[i], photograph, pictures, number, crop_counts[c][i]});
+        number += crop_counts[c][i];
+        pictures += static_cast<std::size_t>(crop_counts[c][i]);
       }
     }
     record_.pictures.resize(draft.empty() ? 0 : pictures);
-    std::vector<std::string> faults(cuts.size());
-    all_in_parallel(cuts.size(), [&](std::size_t i) {
-      if (cuts[i].count > 0) faults[i] = cut_photograph(draft, cuts[i]);
-      note_done();
+    std::vector<std::string> faults(jobs.size());
+    run_all_in_parallel(jobs.size(), [&](std::size_t i) {
+      if (jobs[i].count > 0) faults[i] = crop_photograph(draft, jobs[i]);
+      report_progress();
     });
     std::erase(faults, "");
     if (!faults.empty()) throw UnusablePhotographs(options_.photographs, std::move(faults));
   }
 
-  /// \return what is wrong; empty if nothing is
-  std::string cut_photograph(const fs::path& draft, const Cut& wanted) {
-    const Photograph photo = read_photograph(wanted.file, options_);
-    if (photo.sha256 != record_.photographs[wanted.photograph].photo.sha256) {
-      throw FileError(one_line(wanted.file.string()) +
-                      ": changed while it was imported; try again");
+  /// \return the fault, or empty
+  std::string crop_photograph(const fs::path& draft, const CropJob& job) {
+    const Photograph photo = read_photograph(job.file, options_);
+    if (photo.sha256 != record_.photographs[job.photograph].photo.sha256) {
+      throw FileError(one_line(job.file.string()) + ": changed while it was imported; try again");
     }
-    // The stream depends on the photograph's name only, independent of other photographs.
-    const Digest name = sha256(bytes_of(record_.photographs[wanted.photograph].file));
+    // The stream depends only on the photograph's name, not on other photographs.
+    const Digest name = sha256(bytes_of(record_.photographs[job.photograph].file));
     RandomStream random(options_.seed, "import crops of " + to_hex(name));
     const PhotoSize size{photo.image.height(), photo.image.width()};
-    const auto places = crop_places(size, options_.size_px, wanted.count, random);
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const GreyImage crop =
-          cut(photo.image, {places[i].x, places[i].y, {options_.size_px, options_.size_px}});
+    const auto positions = crop_positions(size, options_.size_px, job.count, random);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const GreyImage crop = crop_image(
+          photo.image, {positions[i].x, positions[i].y, {options_.size_px, options_.size_px}});
       ImportedPicture picture;
-      picture.label = wanted.of_class->label;
+      picture.label = job.photo_class->label;
       picture.file =
-          picture.label + "-" + std::to_string(wanted.first_number + static_cast<int>(i)) + ".png";
-      picture.photograph = wanted.photograph;
-      picture.place = places[i];
+          picture.label + "-" + std::to_string(job.first_number + static_cast<int>(i)) + ".png";
+      picture.photograph = job.photograph;
+      picture.position = positions[i];
       picture.levels = levels_of(crop);
       if (picture.levels.rms_grey == 0.0) {
         return one_line(photo.path.string()) + ": has only one grey level in the crop at x " +
-               std::to_string(places[i].x) + ", y " + std::to_string(places[i].y) +
+               std::to_string(positions[i].x) + ", y " + std::to_string(positions[i].y) +
                ", where nothing can be felt; trim the photograph, or remove it";
       }
       if (draft.empty()) continue;
-      put_down(draft, picture, crop);
-      record_.pictures[wanted.first_picture + i] = std::move(picture);
+      write_picture(draft, picture, crop);
+      record_.pictures[job.first_picture + i] = std::move(picture);
     }
     return {};
   }
 
-  static void put_down(const fs::path& draft, ImportedPicture& picture, const GreyImage& pixels) {
+  static void write_picture(const fs::path& draft, ImportedPicture& picture,
+                            const GreyImage& pixels) {
     engine::write_png(draft / picture.file, pixels);
     picture.sha256 = sha256_of_file(draft / picture.file);
     picture.pixels_sha256 = sha256(pixels.samples());
@@ -262,46 +264,48 @@ class Import {
 
   void equalise(const fs::path& draft) {
     if (options_.equalise == LevelEqualising::none) return;
-    std::vector<PictureLevels> set;
-    for (const ImportedPicture& picture : record_.pictures) set.push_back(picture.levels);
-    record_.equal = equal_levels(set, options_.equalise);
-    all_in_parallel(record_.pictures.size(), [&](std::size_t i) {
+    std::vector<PictureLevels> picture_levels;
+    for (const ImportedPicture& picture : record_.pictures)
+      picture_levels.push_back(picture.levels);
+    record_.target_levels = equal_levels(picture_levels, options_.equalise);
+    run_all_in_parallel(record_.pictures.size(), [&](std::size_t i) {
       ImportedPicture& picture = record_.pictures[i];
-      const EqualisedPicture result =
-          equalised(engine::read_grey_image(draft / picture.file), picture.levels, record_.equal);
+      const EqualisedPicture result = equalise_picture(
+          engine::read_grey_image(draft / picture.file), picture.levels, record_.target_levels);
       picture.clipped_share = result.clipped_share;
-      put_down(draft, picture, result.picture);
+      write_picture(draft, picture, result.picture);
     });
   }
 
   /// Writes the study last; if that fails, the earlier pictures are restored.
   void finish(Draft& draft, const std::vector<std::string>& remarks) {
-    write_output(draft.path() / kStimulusManifestFile, import_manifest(record_, options_, remarks));
-    const fs::path from = fs::absolute(options_.study).lexically_normal().parent_path();
+    write_output(draft.path() / kStimulusManifestFile, manifest_text(record_, options_, remarks));
+    const fs::path study_folder = fs::absolute(options_.study).lexically_normal().parent_path();
     const fs::path pictures =
-        fs::absolute(options_.pictures).lexically_normal().lexically_relative(from);
-    const std::string study = import_study(record_, options_, study_name(options_.study), pictures);
-    require_output_place(options_.study);
-    NewPictures pictures_in_place(draft, options_.pictures);
+        fs::absolute(options_.pictures).lexically_normal().lexically_relative(study_folder);
+    const std::string study =
+        study_file_text(record_, options_, study_name(options_.study), pictures);
+    require_output_path(options_.study);
+    PictureReplacement replacement(draft, options_.pictures);
     write_output(options_.study, study);
-    pictures_in_place.keep();
+    replacement.commit();
   }
 
   ImportReport report(std::vector<std::string> ignored,
-                      const std::vector<std::vector<int>>& shares) {
+                      const std::vector<std::vector<int>>& crop_counts) {
     ImportReport report;
     report.study = options_.study;
     report.pictures = options_.pictures;
     report.ignored = std::move(ignored);
     for (std::size_t c = 0; c < classes_.size(); ++c) {
-      report.classes.push_back(summary_of(classes_[c], shares[c], record_, options_));
+      report.classes.push_back(summary_of(classes_[c], crop_counts[c], record_, options_));
     }
     report.warnings = import_warnings(report, record_, options_);
     return report;
   }
 
   /// Called from several threads.
-  void note_done() {
+  void report_progress() {
     const std::lock_guard lock(mutex_);
     if (progress_) progress_(++done_, total_);
   }
@@ -309,9 +313,9 @@ class Import {
   ImportOptions options_;
   const ImportProgress& progress_;
   std::vector<SizedClass> classes_;
-  std::vector<std::string> small_;  ///< faults of photographs smaller than a crop
+  std::vector<std::string> size_faults_;  ///< faults of photographs smaller than a crop
   ImportRecord record_;
-  std::mutex mutex_;  ///< guards done_, and the progress
+  std::mutex mutex_;  ///< guards done_ and progress_
   int done_ = 0;
   int total_ = 0;
 };

@@ -1,4 +1,4 @@
-/// \file The checks before an import reads or writes, and its report and warnings afterwards.
+/// \file Checks the options of an import, plans its crops, and makes its report and warnings.
 /// Private to stimuli/import.
 #pragma once
 
@@ -14,11 +14,11 @@
 namespace touchtrial::stimuli {
 
 /// Checks that the options are in range, their texts are UTF-8, and the outputs may be written.
-/// \param options  with every path filled in
+/// \param options  with all paths set
 /// \throws UsageError if not
 void check_import(const ImportOptions& options);
 
-/// Checks that there are 2 to 64 classes, and no more stimuli than a study may have.
+/// Checks that there are 2 to 64 classes and not too many stimuli for a study.
 /// \throws FileError if not
 void check_classes(const PhotoFolder& folder, const ImportOptions& options);
 
@@ -29,20 +29,21 @@ struct SizedClass {
   std::vector<PhotoSize> sizes;
 };
 
-/// The fault of a photograph that is smaller than a crop, without a remedy; else empty.
+/// The error message for a photograph smaller than a crop, without a remedy; empty if it fits.
 [[nodiscard]] std::string fault_of_size(const Photograph& photo, PhotoSize size,
                                         const ImportOptions& options);
 
-/// The number of crops of each photograph of each class.
-/// \param small  the faults of photographs that are smaller than a crop
-/// \throws CropsDoNotFit if there are any, or classes give too few crops
-[[nodiscard]] std::vector<std::vector<int>> plan_shares(const std::vector<SizedClass>& classes,
-                                                        std::vector<std::string> small,
-                                                        const ImportOptions& options);
+/// The number of crops from each photograph of each class.
+/// \param size_faults  faults of photographs smaller than a crop
+/// \throws CropsDoNotFit if `size_faults` is not empty, or classes give too few crops
+[[nodiscard]] std::vector<std::vector<int>> plan_crops(const std::vector<SizedClass>& classes,
+                                                       std::vector<std::string> size_faults,
+                                                       const ImportOptions& options);
 
-/// The class's part of the report.
-/// \param shares  the number of crops of each of the class's photographs
-[[nodiscard]] ImportedClass summary_of(const SizedClass& one, const std::vector<int>& shares,
+/// Summarises one class for the report.
+/// \param crop_counts  number of crops from each photograph of the class
+[[nodiscard]] ImportedClass summary_of(const SizedClass& photo_class,
+                                       const std::vector<int>& crop_counts,
                                        const ImportRecord& record, const ImportOptions& options);
 
 /// \param report  with its classes and ignored files

@@ -17,11 +17,11 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kImportVersion = 1;
 
-const char* name_of(LevelEqualising which) {
+const char* name_of(LevelEqualising equalising) {
   using enum LevelEqualising;
   static constexpr auto kNames = std::to_array<Named<LevelEqualising>>(
       {{"none", none}, {"mean", mean}, {"rms", rms}, {"both", both}});
-  return name_in(kNames, which).data();
+  return name_in(kNames, equalising).data();
 }
 
 Json or_null(const std::optional<double>& number) {
@@ -51,7 +51,7 @@ Json to_json(const ImportedPhotograph& photograph) {
           {"camera_dpi", or_null(photo.notes.camera_dpi)},
           {"pictures", photo.notes.pictures},
           {"transparent_share", photo.notes.transparent_share},
-          {"opaque", photo.opaque ? part_json(*photo.opaque) : Json()},
+          {"opaque", photo.opaque_rectangle ? part_json(*photo.opaque_rectangle) : Json()},
           {"lacks_end", photo.notes.lacks_end},
           {"cut_share", photo.notes.cut_share},
           {"heights", photo.notes.heights
@@ -62,20 +62,20 @@ Json to_json(const ImportedPhotograph& photograph) {
 
 Json to_json(const ImportedPicture& picture, const ImportRecord& record,
              const ImportOptions& options) {
-  return {
-      {"label", picture.label},
-      {"file", picture.file},
-      {"photograph", record.photographs[picture.photograph].file},
-      {"crop", part_json({picture.place.x, picture.place.y, {options.size_px, options.size_px}})},
-      {"mean_grey", picture.levels.mean_grey},
-      {"rms_grey", picture.levels.rms_grey},
-      {"feature_mm", picture.levels.feature_px * options.pitch_mm},
-      {"clipped_share", picture.clipped_share},
-      {"sha256", to_hex(picture.sha256)},
-      {"pixels_sha256", to_hex(picture.pixels_sha256)}};
+  return {{"label", picture.label},
+          {"file", picture.file},
+          {"photograph", record.photographs[picture.photograph].file},
+          {"crop",
+           part_json({picture.position.x, picture.position.y, {options.size_px, options.size_px}})},
+          {"mean_grey", picture.levels.mean_grey},
+          {"rms_grey", picture.levels.rms_grey},
+          {"feature_mm", picture.levels.feature_px * options.pitch_mm},
+          {"clipped_share", picture.clipped_share},
+          {"sha256", to_hex(picture.sha256)},
+          {"pixels_sha256", to_hex(picture.pixels_sha256)}};
 }
 
-/// The seed of every participant's schedule; other pictures give other schedules.
+/// The seed of the participants' schedules, which depends on the pictures.
 std::uint64_t study_seed(const ImportRecord& record, std::uint64_t seed) {
   FieldHasher hasher;
   hasher.add("touchtrial import seed").add(static_cast<std::int64_t>(seed));
@@ -97,12 +97,12 @@ Json methods_of(const ImportOptions& options) {
 }
 
 Json rendering_of(const ImportOptions& options) {
-  const bool comparing = options.methods > 1;
+  const bool has_two_methods = options.methods > 1;
   return {{"model", "paper"},
           {"pitch_mm", options.pitch_mm},
           {"gains", "budget"},
-          // Otherwise methods could be distinguished by strength.
-          {"equalise", comparing ? "rms" : "none"}};
+          // Otherwise strength would distinguish the methods.
+          {"equalise", has_two_methods ? "rms" : "none"}};
 }
 
 Json classes_of(const ImportRecord& record, const std::filesystem::path& folder) {
@@ -118,8 +118,8 @@ Json classes_of(const ImportRecord& record, const std::filesystem::path& folder)
 
 }  // namespace
 
-std::string import_manifest(const ImportRecord& record, const ImportOptions& options,
-                            const std::vector<std::string>& remarks) {
+std::string manifest_text(const ImportRecord& record, const ImportOptions& options,
+                          const std::vector<std::string>& remarks) {
   Json json = {{"format", kImportFormat},
                {"version", kImportVersion},
                {"program_version", program_version()},
@@ -131,8 +131,8 @@ std::string import_manifest(const ImportRecord& record, const ImportOptions& opt
                {"pitch_mm", options.pitch_mm},
                {"pixels_per_mm", or_null(options.pixels_per_mm)},
                {"equalise", name_of(options.equalise)},
-               {"equal_mean_grey", or_null(record.equal.mean_grey)},
-               {"equal_rms_grey", or_null(record.equal.rms_grey)},
+               {"equal_mean_grey", or_null(record.target_levels.mean_grey)},
+               {"equal_rms_grey", or_null(record.target_levels.rms_grey)},
                {"remarks", remarks},
                {"photographs", Json::array()},
                {"pictures", Json::array()}};
@@ -146,8 +146,8 @@ std::string import_manifest(const ImportRecord& record, const ImportOptions& opt
   return json.dump(2) + "\n";
 }
 
-std::string import_study(const ImportRecord& record, const ImportOptions& options,
-                         const std::string& name, const std::filesystem::path& folder) {
+std::string study_file_text(const ImportRecord& record, const ImportOptions& options,
+                            const std::string& name, const std::filesystem::path& folder) {
   const Json study = {{"study", name},
                       {"protocol", options.protocol},
                       {"classes", classes_of(record, folder)},

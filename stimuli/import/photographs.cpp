@@ -23,9 +23,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Endings of photographs, including those that this program cannot read: such files are refused by
-/// name rather than ignored.
-constexpr std::array<std::string_view, 27> kPictureEndings = {
+/// File extensions of photographs, including unsupported ones, which are refused rather than
+/// ignored.
+constexpr std::array<std::string_view, 27> kPictureExtensions = {
     ".png", ".jpg", ".jpeg", ".jpe",  ".tif",  ".tiff", ".bmp",  ".pgm", ".ppm",
     ".pnm", ".gif", ".jfif", ".webp", ".heic", ".heif", ".avif", ".jp2", ".jxl",
     ".dng", ".cr2", ".cr3",  ".nef",  ".arw",  ".raw",  ".psd",  ".exr", ".pbm"};
@@ -42,30 +42,29 @@ std::string lower_case(std::string text) {
 }
 
 bool is_picture(const fs::path& file) {
-  return std::ranges::count(kPictureEndings, lower_case(file.extension().string())) != 0 ||
+  return std::ranges::count(kPictureExtensions, lower_case(file.extension().string())) != 0 ||
          engine::begins_like_image(file);
 }
 
-[[noreturn]] void refuse(const fs::path& path, const std::string& what) {
-  throw FileError(one_line(path.string() + ": " + what));
+[[noreturn]] void refuse(const fs::path& path, const std::string& problem) {
+  throw FileError(one_line(path.string() + ": " + problem));
 }
 
 struct Listing {
   std::vector<fs::path> folders;
   std::vector<fs::path> pictures;
-  std::vector<std::string> others;
+  std::vector<std::string> other_files;
 };
 
 /// Lists a folder in natural order of the names, which does not depend on the disk.
-Listing list(const fs::path& folder) {
+Listing list_folder(const fs::path& folder) {
   std::error_code error;
   std::vector<fs::path> paths;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
     if (!entry->path().filename().string().starts_with('.')) paths.push_back(entry->path());
   }
-  if (error)
-    refuse(folder, "cannot be listed (" + error.message() + "); give a folder you may read");
+  if (error) refuse(folder, "cannot be listed (" + error.message() + "); give a readable folder");
   std::ranges::sort(paths, [](const fs::path& a, const fs::path& b) {
     return naturally_before(a.filename().string(), b.filename().string());
   });
@@ -77,7 +76,7 @@ Listing list(const fs::path& folder) {
     } else if (is_picture(path)) {
       listing.pictures.push_back(path);
     } else {
-      listing.others.push_back(path.filename().string());
+      listing.other_files.push_back(path.filename().string());
     }
   }
   return listing;
@@ -89,33 +88,36 @@ struct NaturalOrder {
   }
 };
 
-/// Collects classes, and faults of names.
+/// Collects classes and faults of names.
 class Classes {
  public:
   explicit Classes(PhotoFolder& folder) : folder_(folder) {}
 
   void add(const std::string& label, const fs::path& origin, std::vector<fs::path> files) {
     for (const fs::path& file : files) {
-      const bool is_reported = file == origin && !is_utf8(label);
-      if (!is_reported && !is_utf8(file.filename().string())) {
-        refuse(file, "its name is not UTF-8; rename it");
+      // The fault of the label is reported below.
+      const bool has_label_fault = file == origin && !is_utf8(label);
+      if (!has_label_fault && !is_utf8(file.filename().string())) {
+        add_fault(file, "its name is not UTF-8; rename it");
       }
     }
     const std::string fault = fault_of_label(label);
-    const auto [other, is_new] = origins_.emplace(skeleton_of(label), origin);
+    const auto [earlier, is_new] = origins_.emplace(skeleton_of(label), origin);
     if (!fault.empty()) {
       const bool is_name = label == origin.stem().string() || label == origin.filename().string();
-      refuse(origin, (is_name ? "its name " : "the class in its name, " + in_quotes(label) + ", ") +
-                         fault + " and cannot be a label; rename it");
+      add_fault(origin,
+                (is_name ? "its name " : "the class in its name, " + in_quotes(label) + ", ") +
+                    fault + " and cannot be a label; rename it");
     } else if (!is_new) {
-      refuse(origin, "would be the class \"" + label + "\", which looks like that of " +
-                         other->second.filename().string() + "; rename one, or put both into a " +
-                         "folder of the class's name");
+      add_fault(origin, "gives the class \"" + label +
+                            "\", which is easily confused with that of " +
+                            earlier->second.filename().string() +
+                            "; rename one, or put both into a folder named after the class");
     }
     folder_.classes.push_back({label, std::move(files)});
   }
-  void refuse(const fs::path& origin, const std::string& what) {
-    folder_.faults.push_back(one_line(origin.string() + ": " + what));
+  void add_fault(const fs::path& origin, const std::string& problem) {
+    folder_.faults.push_back(one_line(origin.string() + ": " + problem));
   }
 
  private:
@@ -126,42 +128,42 @@ class Classes {
 void add_folders(const Listing& listing, PhotoFolder& result) {
   Classes classes(result);
   for (const fs::path& folder : listing.folders) {
-    Listing inside = list(folder);
-    for (const fs::path& deeper : inside.folders) {
-      classes.refuse(deeper,
-                     "is a folder within a class's folder; put the photographs of a class into "
-                     "one folder");
+    Listing class_listing = list_folder(folder);
+    for (const fs::path& subfolder : class_listing.folders) {
+      classes.add_fault(
+          subfolder,
+          "is a folder inside a class folder; put all photographs of a class into one folder");
     }
-    if (inside.pictures.empty() && inside.folders.empty()) {
-      classes.refuse(folder, "holds no photograph; add some, or remove the folder");
+    if (class_listing.pictures.empty() && class_listing.folders.empty()) {
+      classes.add_fault(folder, "contains no photograph; add some, or remove the folder");
     }
-    for (const std::string& other : inside.others) {
-      result.ignored.push_back(folder.filename().string() + "/" + other);
+    for (const std::string& file : class_listing.other_files) {
+      result.ignored.push_back(folder.filename().string() + "/" + file);
     }
-    classes.add(folder.filename().string(), folder, std::move(inside.pictures));
+    classes.add(folder.filename().string(), folder, std::move(class_listing.pictures));
   }
   if (listing.pictures.empty()) return;
   const std::size_t more = listing.pictures.size() - 1;
-  classes.refuse(listing.pictures.front(),
-                 "lies beside folders" +
-                     (more > 0 ? ", and so do " + std::to_string(more) + " more" : "") +
-                     "; give a folder of class folders, or one of photographs alone");
+  classes.add_fault(listing.pictures.front(),
+                    "is in a folder with class folders" +
+                        (more > 0 ? ", and so are " + std::to_string(more) + " more" : "") +
+                        "; give a folder of class folders only, or of photographs only");
 }
 
-/// The regular expression of a pattern of names, whose only group is the class.
+/// Converts a pattern of names to a regular expression whose only group is the class.
 std::regex expression_of(const std::string& names) {
   constexpr std::string_view kClass = "{class}";
   constexpr std::size_t kMaxBytes = 100;
-  const std::size_t at = names.find(kClass);
-  if (at == std::string::npos || names.find(kClass, at + 1) != std::string::npos ||
+  const std::size_t position = names.find(kClass);
+  if (position == std::string::npos || names.find(kClass, position + 1) != std::string::npos ||
       names.size() > kMaxBytes) {
     throw UsageError(
-        "stimuli import: --names must have {class} once, for instance {class}_#, not be " +
+        "stimuli import: --names must contain {class} once, for instance {class}_#, and not be " +
         in_quotes(names));
   }
   std::string expression;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i == at) {
+    if (i == position) {
       expression += "(.+?)";
       i += kClass.size() - 1;
     } else if (names[i] == '#') {
@@ -176,7 +178,7 @@ std::regex expression_of(const std::string& names) {
   return std::regex(expression);
 }
 
-/// The files of an album by the classes in their names, or their stems.
+/// Adds the files of an album to the classes in their names, or each to a class named by its stem.
 void add_files(const Listing& listing, const std::string& names, PhotoFolder& result) {
   Classes classes(result);
   if (names.empty()) {
@@ -191,19 +193,19 @@ void add_files(const Listing& listing, const std::string& names, PhotoFolder& re
     if (std::regex_match(stem, parts, expression)) {
       files[parts[1]].push_back(file);
     } else {
-      classes.refuse(
-          file, "its name is not of the form " + names + "; rename it, or give another --names");
+      classes.add_fault(
+          file, "its name does not match " + names + "; rename it, or give another --names");
       result.classes.push_back({stem, {file}});
     }
   }
-  for (auto& [label, of_class] : files) {
-    const fs::path first = of_class.front();
-    classes.add(label, first, std::move(of_class));
+  for (auto& [label, class_files] : files) {
+    const fs::path first = class_files.front();
+    classes.add(label, first, std::move(class_files));
   }
 }
 
-constexpr double kMaxEnlarged = 4.0;
-constexpr double kMaxShrunk = 1.0 / 64;
+constexpr double kMaxScale = 4.0;
+constexpr double kMinScale = 1.0 / 64;
 
 double scale_for(const Photograph& photo, const ImportOptions& options) {
   const std::string name = one_line(photo.path.string());
@@ -211,24 +213,24 @@ double scale_for(const Photograph& photo, const ImportOptions& options) {
       options.pixels_per_mm_of_files ? photo.notes.pixels_per_mm : options.pixels_per_mm;
   if (!pixels_per_mm && !options.pixels_per_mm_of_files) return 1.0;
   if (!pixels_per_mm) {
-    throw FileError(name + ": does not say how many pixels a millimetre has" +
-                    (photo.notes.camera_dpi
-                         ? " (" + number_text(std::round(*photo.notes.camera_dpi)) +
-                               " dpi is a default of cameras)"
-                         : " (72 and 96 dpi are defaults for an unknown resolution)") +
-                    "; give --pixels-per-mm a number");
+    throw FileError(
+        name + ": does not state how many pixels per millimetre it has" +
+        (photo.notes.camera_dpi
+             ? " (" + number_text(std::round(*photo.notes.camera_dpi)) + " dpi is a camera default)"
+             : " (72 and 96 dpi are defaults for an unknown resolution)") +
+        "; give a number with --pixels-per-mm");
   }
   const double scale = 1.0 / (*pixels_per_mm * options.pitch_mm);
-  if (scale > kMaxEnlarged || scale < kMaxShrunk) {
+  if (scale > kMaxScale || scale < kMinScale) {
     throw FileError(name + ": " + number_text(*pixels_per_mm) +
-                    " pixels a millimetre at a pitch of " + number_text(options.pitch_mm) +
-                    " mm means scaling by " + number_text(scale) +
-                    ", beyond 1/64 to 4; check --pixels-per-mm and --pitch-mm");
+                    " pixels per millimetre at a pitch of " + number_text(options.pitch_mm) +
+                    " mm would require scaling by " + number_text(scale) +
+                    ", outside 1/64 to 4; check --pixels-per-mm and --pitch-mm");
   }
   return scale;
 }
 
-int scaled(int length_px, double scale) {
+int scaled_length(int length_px, double scale) {
   return static_cast<int>(std::max(1L, std::lround(length_px * scale)));
 }
 
@@ -237,10 +239,10 @@ int scaled(int length_px, double scale) {
 bool naturally_before(const std::string& a, const std::string& b) {
   std::size_t i = 0;
   std::size_t j = 0;
-  const auto number = [](const std::string& text, std::size_t& at) {
-    const std::size_t start = std::min(text.find_first_not_of('0', at), text.size());
-    for (at = start; at < text.size() && is_digit(text[at]);) ++at;
-    return std::string_view(text).substr(start, at - start);
+  const auto number = [](const std::string& text, std::size_t& position) {
+    const std::size_t start = std::min(text.find_first_not_of('0', position), text.size());
+    for (position = start; position < text.size() && is_digit(text[position]);) ++position;
+    return std::string_view(text).substr(start, position - start);
   };
   while (i < a.size() && j < b.size()) {
     if (is_digit(a[i]) && is_digit(b[j])) {
@@ -255,9 +257,9 @@ bool naturally_before(const std::string& a, const std::string& b) {
       ++j;
     }
   }
-  const std::size_t left_over = a.size() - i;
-  const std::size_t right_over = b.size() - j;
-  return left_over != right_over ? left_over < right_over : a < b;
+  const std::size_t remaining_a = a.size() - i;
+  const std::size_t remaining_b = b.size() - j;
+  return remaining_a != remaining_b ? remaining_a < remaining_b : a < b;
 }
 
 PhotoFolder list_photographs(const fs::path& folder, const std::string& names) {
@@ -266,11 +268,11 @@ PhotoFolder list_photographs(const fs::path& folder, const std::string& names) {
     refuse(folder, fs::exists(folder, error) ? "is not a folder; give the folder of the photographs"
                                              : "does not exist; check the path");
   }
-  Listing listing = list(folder);
+  Listing listing = list_folder(folder);
   PhotoFolder result;
-  result.ignored = std::move(listing.others);
+  result.ignored = std::move(listing.other_files);
   if (!names.empty() && !listing.folders.empty()) {
-    refuse(folder, "has folders, whose names are the classes; leave out --names");
+    refuse(folder, "contains folders, whose names are the classes; omit --names");
   }
   if (listing.folders.empty()) {
     add_files(listing, names, result);
@@ -279,8 +281,8 @@ PhotoFolder list_photographs(const fs::path& folder, const std::string& names) {
   }
   if (result.classes.empty()) {
     refuse(folder,
-           "holds no photograph; give a folder of PNG, JPEG, TIFF, BMP, GIF or PGM files, or "
-           "of folders of them");
+           "contains no photograph; give a folder of PNG, JPEG, TIFF, BMP, GIF or PGM files, or of "
+           "class folders with such files");
   }
   return result;
 }
@@ -291,7 +293,7 @@ Photograph read_photograph(const fs::path& path, const ImportOptions& options) {
   Photograph photo;
   photo.path = path;
   photo.notes = std::move(picture.notes);
-  photo.image = engine::upright(picture.grey, photo.notes.orientation);
+  photo.image = engine::turn_upright(picture.grey, photo.notes.orientation);
   photo.sha256 = sha256(file);
   photo.pixels_sha256 = FieldHasher()
                             .add(std::int64_t{photo.image.height()})
@@ -303,16 +305,17 @@ Photograph read_photograph(const fs::path& path, const ImportOptions& options) {
   photo.scale = scale_for(photo, options);
   if (photo.notes.transparent_share > 0.0) {
     const GreyImage opacity =
-        engine::upright(engine::opacity_of(file, path.string()), photo.notes.orientation);
-    photo.opaque = opaque_part(opacity, static_cast<int>(std::ceil(options.size_px / photo.scale)));
-    if (photo.opaque->size_px.width_px == 0) {
-      refuse(path, "has no opaque pixel; put it on a background, and export it again");
+        engine::turn_upright(engine::opacity_of(file, path.string()), photo.notes.orientation);
+    photo.opaque_rectangle =
+        opaque_part(opacity, static_cast<int>(std::ceil(options.size_px / photo.scale)));
+    if (photo.opaque_rectangle->size_px.width_px == 0) {
+      refuse(path, "has no opaque pixel; fill its background and export it again");
     }
-    photo.image = cut(photo.image, *photo.opaque);
+    photo.image = crop_image(photo.image, *photo.opaque_rectangle);
   }
   if (photo.scale != 1.0) {
-    photo.image = engine::resized(photo.image, scaled(photo.image.height(), photo.scale),
-                                  scaled(photo.image.width(), photo.scale));
+    photo.image = engine::resized(photo.image, scaled_length(photo.image.height(), photo.scale),
+                                  scaled_length(photo.image.width(), photo.scale));
   }
   return photo;
 }

@@ -1,4 +1,4 @@
-/// \file Brightness, contrast and feature size of a picture, and their equalising over a set.
+/// \file Measures brightness, contrast and feature size of pictures, and equalises the first two.
 /// Private to stimuli/import. Source: docs/own-images.md, "Equalising".
 #pragma once
 
@@ -11,9 +11,9 @@
 
 namespace touchtrial::stimuli {
 
-/// The mean of equalised pictures: the grey of the flat wall.
+/// The mean of equalised pictures, equal to the grey of the flat wall.
 inline constexpr double kEqualMeanGrey = 128.0;
-/// Share of a picture's pixels that equalising contrasts may clip at either end.
+/// The share of a picture's pixels that equalising may clip at either end.
 inline constexpr double kTailShare = 0.0005;
 
 struct PictureLevels {
@@ -26,23 +26,23 @@ struct PictureLevels {
   double feature_px = 0.0;
 };
 
-/// The mean of the middle two of an even number.
 /// \param numbers  at least one
 [[nodiscard]] double median(std::vector<double> numbers);
 
 /// \param picture  at least 1 x 1
 [[nodiscard]] PictureLevels levels_of(const GreyImage& picture);
 
-/// The levels that every picture of a set gets; without a value, each picture keeps its own.
+/// The target levels of a set. Each picture keeps a level that has no target.
 struct EqualLevels {
   std::optional<double> mean_grey;
   std::optional<double> rms_grey;
 };
 
-/// The mean is kEqualMeanGrey; the rms is the median of the set, or the largest that every picture
-/// can have without clipping beyond its tails if that is less.
+/// The target mean is kEqualMeanGrey. The target rms is the median of the set, or less if a picture
+/// would be clipped by more than kTailShare.
 /// \param set  at least one picture, none of them constant
-[[nodiscard]] EqualLevels equal_levels(std::span<const PictureLevels> set, LevelEqualising which);
+[[nodiscard]] EqualLevels equal_levels(std::span<const PictureLevels> set,
+                                       LevelEqualising equalising);
 
 struct EqualisedPicture {
   GreyImage picture;
@@ -50,7 +50,8 @@ struct EqualisedPicture {
 };
 
 /// \param levels  of the picture; it must not be constant if the rms changes
-[[nodiscard]] EqualisedPicture equalised(const GreyImage& picture, const PictureLevels& levels,
-                                         const EqualLevels& wanted);
+[[nodiscard]] EqualisedPicture equalise_picture(const GreyImage& picture,
+                                                const PictureLevels& levels,
+                                                const EqualLevels& target);
 
 }  // namespace touchtrial::stimuli

@@ -27,32 +27,32 @@ class Basket {
   [[nodiscard]] ObjectPoint operator()(double x, double y) const {
     const double wx = x + 2.0 * sway_.at(x / 90, y / 90);
     const double wy = y + 2.0 * sway_.at(x / 90 + 30, y / 90);
-    if (const ObjectPoint rim = rim_point(wx, wy); rim.covers) return rim;
-    if (const ObjectPoint body = body_point(wx, wy); body.covers) return body;
+    if (const ObjectPoint rim = rim_point(wx, wy); rim.is_object) return rim;
+    if (const ObjectPoint body = body_point(wx, wy); body.is_object) return body;
     return handle_point(wx, wy);
   }
 
-  /// Rods over and under the stakes, row by row.
-  /// \param angle  round the basket, radians
+  /// A point of the weave: rods over and under the stakes, row by row.
+  /// \param angle  around the basket, radians
   /// \param v  downwards, units
-  [[nodiscard]] SurfacePoint woven(double angle, double v) const {
+  [[nodiscard]] SurfacePoint weave_point(double angle, double v) const {
     const double wobble = 2.0 * sway_.fractal(angle * 4 + 9, v / 60, 2);
     const double row = std::floor((v + wobble) / kRow);
     const auto row_number = static_cast<std::int64_t>(row);
     const double across = 2.0 * ((v + wobble) / kRow - row) - 1.0;
-    const double place = angle / kStake + 0.12 * sway_.at(angle * 9, row * 0.31);
+    const double position = angle / kStake + 0.12 * sway_.at(angle * 9, row * 0.31);
     const double parity = static_cast<double>(row_number & 1);
-    const double wave = std::cos(3.14159265358979 * (place + parity));
+    const double wave = std::cos(3.14159265358979 * (position + parity));
     const double thickness = 0.86 + 0.16 * traits_.value(traits_.hash(row_number, 1)) +
                              0.08 * rods_.at(angle * 6, row * 3.7);
     const double u = across / thickness;
     const double round = u * u < 1.0 ? std::sqrt(1.0 - u * u) : -0.6;
     const double rod = 6.2 * round + 5.0 * wave;
-    const double stake_u = 2.6 * (place - std::floor(place + 0.5));
+    const double stake_u = 2.6 * (position - std::floor(position + 0.5));
     const double stake =
         stake_u * stake_u < 1.0 ? 5.5 * std::sqrt(1.0 - stake_u * stake_u) - 1.5 : -6.0;
     return rod >= stake ? rod_point(rod, angle, across, row_number)
-                        : stake_point(stake, stake_u, v, place);
+                        : stake_point(stake, stake_u, v, position);
   }
 
  private:
@@ -61,10 +61,10 @@ class Basket {
     return 186.0 + 90.0 * t * (1.0 - t) - 52.0 * t * t;
   }
 
-  /// Strands twisted round an axis.
+  /// A point of strands twisted around an axis.
   /// \param across  -1 .. 1
   /// \param along  units
-  [[nodiscard]] SurfacePoint twisted(double across, double along, double radius) const {
+  [[nodiscard]] SurfacePoint twisted_point(double across, double along, double radius) const {
     const double phase = along / (2.1 * radius) + 0.55 * across;
     const double strand = phase - std::floor(phase);
     const double ridge = std::sqrt(std::max(0.0, 1.0 - 4.0 * (strand - 0.5) * (strand - 0.5)));
@@ -87,7 +87,7 @@ class Basket {
     const double across = (y - axis) / kRadius;
     if (std::abs(across) >= 1.0) return {};
     const double angle = std::asin(across_body);
-    ObjectPoint point{true, twisted(across, 190.0 * angle, kRadius)};
+    ObjectPoint point{true, twisted_point(across, 190.0 * angle, kRadius)};
     point.surface.height_px += kBulge * std::cos(angle) + 4.0;
     return point;
   }
@@ -99,7 +99,7 @@ class Basket {
     const double r = std::sqrt(dx * dx + dy * dy);
     const double across = (r - 1.0) * 128.0 / kRadius;
     if (dy > 0.0 || std::abs(across) >= 1.0) return {};
-    ObjectPoint point{true, twisted(across, 130.0 * std::atan2(dy, dx), kRadius)};
+    ObjectPoint point{true, twisted_point(across, 130.0 * std::atan2(dy, dx), kRadius)};
     point.surface.height_px += 46.0;
     return point;
   }
@@ -112,7 +112,7 @@ class Basket {
     const double v = y - 14.0 * front;  // rows sag towards the viewer
     if (v > kFoot - 8.0) return {};
     const double angle = std::asin(t);
-    ObjectPoint point{true, woven(angle, v)};
+    ObjectPoint point{true, weave_point(angle, v)};
     point.surface.height_px += kBulge * front;
     return point;
   }
@@ -128,8 +128,8 @@ class Basket {
   }
 
   [[nodiscard]] SurfacePoint stake_point(double height, double across, double v,
-                                         double place) const {
-    const double offset = 3.1 * std::floor(place + 0.5);
+                                         double position) const {
+    const double offset = 3.1 * std::floor(position + 0.5);
     const double fibre = fibres_.ridged(across * 1.3 + offset, v / 50, 3);
     return {std::max(height, -5.0) + 0.8 * fibre, 0.30 + 0.18 * fibre};
   }
@@ -144,7 +144,7 @@ class Basket {
 
 GreyImage make_basket(const Specimen& specimen, int size_px) {
   const Lamp lamp{{-0.5, -0.55, 0.8}, 0.34, 70.0, 4.0, 9.0, 0.78};
-  return object_picture(specimen, size_px, Basket(specimen.noise_seed()), lamp, {112.0});
+  return draw_object(specimen, size_px, Basket(specimen.noise_seed()), lamp, {112.0});
 }
 
 GreyImage make_wicker(const Specimen& specimen, int size_px) {
@@ -152,18 +152,18 @@ GreyImage make_wicker(const Specimen& specimen, int size_px) {
   const Basket basket(specimen.noise_seed());
   const Noise bulge(specimen.noise_seed(), "wicker/bulge");
   const double stakes = specimen.factor("wicker/stakes", 0.15);
-  // Stakes are never quite upright or evenly spaced, and the wall bulges here and there.
+  // Stakes are not quite upright or evenly spaced, and the wall bulges.
   const auto wall = [&](double x, double y) {
     const double u = x + 13.0 * bulge.fractal(x / 75, y / 260, 2);
     const double v = y + 13.0 * bulge.fractal(x / 210 + 20, y / 170, 2);
-    SurfacePoint point = basket.woven(stakes * u / kUnitsPerRadian, v);
+    SurfacePoint point = basket.weave_point(stakes * u / kUnitsPerRadian, v);
     point.height_px += 9.0 * bulge.fractal(x / 120 + 50, y / 120, 2);
     return point;
   };
   View view = view_of(specimen, {0.18, 0.08, 0.2});
   view.scale *= 1.3;
   const Lamp lamp{{-0.5, -0.55, 0.8}, 0.34, 40.0, 4.0, 9.0};
-  return surface_picture(specimen, size_px, wall, view, lamp, {118.0});
+  return draw_surface(specimen, size_px, wall, view, lamp, {118.0});
 }
 
 }  // namespace touchtrial::stimuli

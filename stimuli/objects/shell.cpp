@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kHalfAngle = 1.02;  ///< of the fan, radians
 
-/// The shape of a shell and its place in the picture, units.
+/// The shape and position of a shell, units.
 struct ShellShape {
   Vec2 hinge{250.0, 446.0};
   double radius = 392.0;
@@ -19,7 +19,7 @@ struct ShellShape {
   double years = 17.0;       ///< number of growth terraces
 };
 
-/// The outside of a scallop: ribs that fan out from the hinge, crossed by growth bands.
+/// The outside of a scallop shell: ribs fan out from the hinge and are crossed by growth bands.
 class Shell {
  public:
   explicit Shell(std::uint64_t seed, const ShellShape& shape = {})
@@ -33,15 +33,15 @@ class Shell {
     const double dy = shape_.hinge.y - y;
     const double angle = std::atan2(dx, dy + 1e-9);
     const double r = std::sqrt(dx * dx + dy * dy);
-    if (const ObjectPoint fan = fan_point(x, y, angle, r); fan.covers) return fan;
+    if (const ObjectPoint fan = fan_point(x, y, angle, r); fan.is_object) return fan;
     return ear_point(x, y, dx, dy);
   }
 
  private:
   /// Height of the rib profile, 0 in a groove, 1 on a crest.
   [[nodiscard]] double rib(double angle, double r) const {
-    const double place = (angle + 0.008 * sway_.at(angle * 9, r / 90)) / shape_.rib_angle;
-    const double t = 2.0 * (place - std::floor(place)) - 1.0;
+    const double position = (angle + 0.008 * sway_.at(angle * 9, r / 90)) / shape_.rib_angle;
+    const double t = 2.0 * (position - std::floor(position)) - 1.0;
     return std::sqrt(std::max(0.0, 1.0 - t * t * t * t)) * (1.0 - 0.25 * t * t);
   }
 
@@ -69,28 +69,29 @@ class Shell {
     return {true, point};
   }
 
-  /// Growth terraces at irregular distances, which rise slowly and fall suddenly.
+  /// Growth terraces at irregular distances, with a slow rise and a steep fall.
   [[nodiscard]] double growth_rings(double share, double angle) const {
-    const double place = shape_.years * share * (0.7 + 0.5 * share) +
-                         1.2 * growth_.fractal(share * 6, 0.7, 3) +
-                         0.12 * sway_.at(angle * 14, share * 30);
-    const double coarse = place - std::floor(place);
-    const double fine = 3.7 * place - std::floor(3.7 * place);
+    const double position = shape_.years * share * (0.7 + 0.5 * share) +
+                            1.2 * growth_.fractal(share * 6, 0.7, 3) +
+                            0.12 * sway_.at(angle * 14, share * 30);
+    const double coarse = position - std::floor(position);
+    const double fine = 3.7 * position - std::floor(3.7 * position);
     return coarse * smooth_step(1.0, 0.86, coarse) + 0.5 * fine * smooth_step(1.0, 0.8, fine);
   }
 
-  /// Bands of colour across the ribs, interrupted here and there.
+  /// Interrupted bands of colour across the ribs.
   [[nodiscard]] double bands(double share, double angle) const {
     return growth_.fractal(share * 9 + 30, 0.4 + 0.5 * sway_.at(angle * 5, share * 5), 3) +
            0.7 * growth_.fractal(share * 26, angle * 7, 2);
   }
 
-  /// The flat wings beside the hinge.
+  /// The flat wings next to the hinge.
   [[nodiscard]] ObjectPoint ear_point(double x, double y, double dx, double dy) const {
-    const double out = std::abs(dx);
-    const double top = 78.0 - 0.16 * out;
-    if (dy < -6.0 || dy > top || out > 96.0 - 0.25 * dy + 3.0 * sway_.at(y / 18, 2.2)) return {};
-    const double line = (out + 0.3 * dy) / 7.5;
+    const double side_distance = std::abs(dx);
+    const double top = 78.0 - 0.16 * side_distance;
+    if (dy < -6.0 || dy > top || side_distance > 96.0 - 0.25 * dy + 3.0 * sway_.at(y / 18, 2.2))
+      return {};
+    const double line = (side_distance + 0.3 * dy) / 7.5;
     const double ridge = std::abs(2.0 * (line - std::floor(line)) - 1.0);
     const double grain = grain_.fractal(x / 3.4, y / 3.4, 3);
     return {true,
@@ -108,11 +109,11 @@ class Shell {
 
 GreyImage make_shell(const Specimen& specimen, int size_px) {
   const Lamp lamp{{-0.62, -0.42, 0.8}, 0.36, 60.0, 5.0, 9.0, 0.78};
-  return object_picture(specimen, size_px, Shell(specimen.noise_seed()), lamp, {112.0});
+  return draw_object(specimen, size_px, Shell(specimen.noise_seed()), lamp, {112.0});
 }
 
 GreyImage make_ribs(const Specimen& specimen, int size_px) {
-  // The shell is so large that neither its hinge nor its margin is in sight.
+  // The shell is so large that its hinge and its margin are outside the picture.
   ShellShape shape;
   shape.hinge = {170.0 + specimen.shift("ribs/hinge", 160.0), 1120.0};
   shape.radius = 1750.0;
@@ -129,8 +130,7 @@ GreyImage make_ribs(const Specimen& specimen, int size_px) {
     return point;
   };
   const Lamp lamp{{-0.62, -0.42, 0.8}, 0.36, 40.0, 5.0, 9.0};
-  return surface_picture(specimen, size_px, ribs, view_of(specimen, {0.12, 0.15, 0.2}), lamp,
-                         {118.0});
+  return draw_surface(specimen, size_px, ribs, view_of(specimen, {0.12, 0.15, 0.2}), lamp, {118.0});
 }
 
 }  // namespace touchtrial::stimuli

@@ -5,7 +5,7 @@
 namespace touchtrial::stimuli {
 namespace {
 
-/// Tall plates with deep furrows between them, cracks across and fibres along.
+/// Tall plates with deep furrows in between, transverse cracks and longitudinal fibres.
 class Bark {
  public:
   explicit Bark(const Specimen& specimen)
@@ -23,8 +23,8 @@ class Bark {
     const double wx = x + 20.0 * bend_.fractal(x / 70, y / 120, 3) + 5.0 * bend_.at(x / 13, y / 22);
     // The ends of the plates shift from one column to the next, so that they do not form rows.
     const double wy = y + 150.0 * bend_.fractal(wx / 48 + 9, y / 400 + 5, 2);
-    const CellPlace plate = plates_.at(wx / width_, wy / 165);
-    const CellPlace scale = scales_.at(wx / 17 + 3.1 * plates_.value(plate.cell), wy / 42);
+    const CellPosition plate = plates_.at(wx / width_, wy / 165);
+    const CellPosition scale = scales_.at(wx / 17 + 3.1 * plates_.value(plate.cell), wy / 42);
     const double top = smooth_step(0.02, furrow_, plate.to_border);
     const double crack = smooth_step(0.0, 0.16, scale.to_border);
     const double fibre = fibres_.ridged(wx / 5.5, wy / 45, 3);
@@ -46,7 +46,7 @@ class Bark {
   Noise fibres_;
   Noise grain_;
   double width_;   ///< of a plate, pixels
-  double furrow_;  ///< share of a plate that slopes down to the furrow
+  double furrow_;  ///< share of a plate that slopes towards the furrow
   double depth_;   ///< of the furrows, pixels
   double roughness_;
 };
@@ -55,7 +55,7 @@ class Bark {
 
 GreyImage make_bark(const Specimen& specimen, int size_px) {
   const Lamp lamp{{-0.75, -0.35, 0.62}, 0.32, 30.0, 3.0, 9.0};
-  return surface_picture(specimen, size_px, Bark(specimen), view_of(specimen), lamp, {122.0, 0.84});
+  return draw_surface(specimen, size_px, Bark(specimen), view_of(specimen), lamp, {122.0, 0.84});
 }
 
 }  // namespace touchtrial::stimuli

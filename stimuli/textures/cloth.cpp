@@ -8,15 +8,15 @@
 namespace touchtrial::stimuli {
 namespace {
 
-/// The thread of one system at a point.
-struct ThreadPlace {
-  std::int64_t number = 0;  ///< which thread
+/// The warp or weft thread at a point.
+struct ThreadPosition {
+  std::int64_t number = 0;  ///< index of the thread
   double across = 0.0;      ///< -1 .. 1 from one side of its lane to the other
   double thickness = 1.0;   ///< of the thread here, relative to its lane
   double tone = 0.0;        ///< lightness of the thread here, about -1 .. 1
 };
 
-/// Parallel threads, each with its own thickness, none quite straight.
+/// Parallel threads of different thickness, slightly bent.
 class Threads {
  public:
   Threads(std::uint64_t seed, std::string_view purpose, double pitch_px)
@@ -25,22 +25,22 @@ class Threads {
         pitch_px_(pitch_px) {}
 
   /// \param across,along  position in pixels, across and along the threads
-  [[nodiscard]] ThreadPlace at(double across, double along) const {
+  [[nodiscard]] ThreadPosition at(double across, double along) const {
     const double drift = 0.5 * wander_.fractal(across / 130, along / 130, 2);
     double lane = across / pitch_px_ + drift;
-    // The wobble depends on the lane's number, so that the whole thread moves together.
+    // The wobble depends on the lane's number, so that it is constant across a thread.
     const double number = std::floor(lane);
     lane += 0.26 * wander_.fractal(number * 7.31, along / 42, 2);
-    ThreadPlace place;
-    place.number = static_cast<std::int64_t>(std::floor(lane));
-    const auto n = static_cast<double>(place.number);
-    place.across = 2.0 * (lane - n) - 1.0;
+    ThreadPosition position;
+    position.number = static_cast<std::int64_t>(std::floor(lane));
+    const auto n = static_cast<double>(position.number);
+    position.across = 2.0 * (lane - n) - 1.0;
     const double slub = std::max(0.0, wander_.at(n * 3.7 + 50, along / 55) - 0.25);
-    place.thickness = 0.80 + 0.22 * traits_.value(traits_.hash(place.number, 1)) + 0.45 * slub +
-                      0.07 * wander_.at(n * 5.3, along / 9);
-    place.tone = 2.0 * traits_.value(traits_.hash(place.number, 2)) - 1.0 +
-                 0.8 * wander_.fractal(n * 9.1 + 20, along / 30, 3);
-    return place;
+    position.thickness = 0.80 + 0.22 * traits_.value(traits_.hash(position.number, 1)) +
+                         0.45 * slub + 0.07 * wander_.at(n * 5.3, along / 9);
+    position.tone = 2.0 * traits_.value(traits_.hash(position.number, 2)) - 1.0 +
+                    0.8 * wander_.fractal(n * 9.1 + 20, along / 30, 3);
+    return position;
   }
 
  private:
@@ -49,11 +49,11 @@ class Threads {
   double pitch_px_;
 };
 
-/// Height of a thread that goes over and under others: round across, wavy along.
-double thread_height(const ThreadPlace& place, double lift) {
-  const double u = place.across / place.thickness;
+/// Height of a woven thread, with a round cross-section.
+double thread_height(const ThreadPosition& position, double lift) {
+  const double u = position.across / position.thickness;
   const double round = u * u < 1.0 ? std::sqrt(1.0 - u * u) : -1.2;
-  return 1.25 * round * place.thickness + 1.1 * lift;
+  return 1.25 * round * position.thickness + 1.1 * lift;
 }
 
 class Cloth {
@@ -63,19 +63,19 @@ class Cloth {
         weft_(specimen.noise_seed(), "cloth/weft", 7.3 * specimen.factor("cloth/weft", 0.12)),
         fibres_(specimen.noise_seed(), "cloth/fibres"),
         folds_(specimen.noise_seed(), "cloth/folds"),
-        rumple_(21.0 * specimen.factor("cloth/rumple", 0.6)) {}
+        fold_height_(21.0 * specimen.factor("cloth/rumple", 0.6)) {}
 
   [[nodiscard]] SurfacePoint operator()(double x, double y) const {
     const double shear = 9.0 * folds_.fractal(x / 220, y / 220, 2);
-    const ThreadPlace warp = warp_.at(x + shear, y);
-    const ThreadPlace weft = weft_.at(y + 0.8 * shear + 0.03 * x, x);
+    const ThreadPosition warp = warp_.at(x + shear, y);
+    const ThreadPosition weft = weft_.at(y + 0.8 * shear + 0.03 * x, x);
     const double lift = warp_lift(warp, weft);
     const double warp_height = thread_height(warp, lift);
     const double weft_height = thread_height(weft, -lift);
-    SurfacePoint point =
-        warp_height > weft_height ? yarn(warp, warp_height, y) : yarn(weft, weft_height, x);
+    SurfacePoint point = warp_height > weft_height ? yarn_point(warp, warp_height, y)
+                                                   : yarn_point(weft, weft_height, x);
     const double hair = fibres_.fractal(x / 2.1, y / 2.1, 2);
-    point.height_px += 0.35 * hair + rumple_ * folds_.fractal(x / 120, y / 150, 2);
+    point.height_px += 0.35 * hair + fold_height_ * folds_.fractal(x / 120, y / 150, 2);
     point.albedo += 0.05 * hair + 0.12 * folds_.fractal(x / 70 + 9, y / 70, 3);
     return point;
   }
@@ -83,18 +83,20 @@ class Cloth {
  private:
   static constexpr double kGapHeight = -1.7;
 
-  /// Plain weave: the warp is up (1) and the weft down at one crossing, the warp down (-1) and the
-  /// weft up at the next.
-  static double warp_lift(const ThreadPlace& warp, const ThreadPlace& weft) {
-    const double up = ((warp.number + weft.number) & 1) == 1 ? 1.0 : -1.0;
-    return up * (1.0 - 0.55 * weft.across * weft.across) * (1.0 - 0.55 * warp.across * warp.across);
+  /// Plain weave: the warp is alternately over (1) and under (-1) the weft.
+  static double warp_lift(const ThreadPosition& warp, const ThreadPosition& weft) {
+    const double sign = ((warp.number + weft.number) & 1) == 1 ? 1.0 : -1.0;
+    return sign * (1.0 - 0.55 * weft.across * weft.across) *
+           (1.0 - 0.55 * warp.across * warp.across);
   }
 
-  /// The upper thread at a point: twisted, so its fibres run at an angle. Gaps are dark.
-  [[nodiscard]] SurfacePoint yarn(const ThreadPlace& place, double height, double along) const {
-    const double twist = fibres_.ridged((along + 4.0 * place.across) / 4.2,
-                                        static_cast<double>(place.number) * 3.3 + place.across, 2);
-    const double albedo = 0.52 + 0.07 * place.tone + 0.10 * twist;
+  /// The upper thread at a point. It is twisted, so its fibres are oblique. Gaps are dark.
+  [[nodiscard]] SurfacePoint yarn_point(const ThreadPosition& position, double height,
+                                        double along) const {
+    const double twist =
+        fibres_.ridged((along + 4.0 * position.across) / 4.2,
+                       static_cast<double>(position.number) * 3.3 + position.across, 2);
+    const double albedo = 0.52 + 0.07 * position.tone + 0.10 * twist;
     const bool is_gap = height < kGapHeight + 0.5;
     return {std::max(height, kGapHeight) + 0.45 * twist, is_gap ? 0.75 * albedo : albedo};
   }
@@ -103,15 +105,15 @@ class Cloth {
   Threads weft_;
   Noise fibres_;
   Noise folds_;
-  double rumple_;  ///< height of the folds, pixels
+  double fold_height_;  ///< height of the folds, pixels
 };
 
 }  // namespace
 
 GreyImage make_cloth(const Specimen& specimen, int size_px) {
   const Lamp lamp{{-0.5, -0.62, 0.8}, 0.42, 14.0, 2.0, 5.0};
-  return surface_picture(specimen, size_px, Cloth(specimen), view_of(specimen, {0.15, 0.3, 0.2}),
-                         lamp, {126.0, 0.75});
+  return draw_surface(specimen, size_px, Cloth(specimen), view_of(specimen, {0.15, 0.3, 0.2}), lamp,
+                      {126.0, 0.75});
 }
 
 }  // namespace touchtrial::stimuli

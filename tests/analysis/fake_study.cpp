@@ -28,8 +28,8 @@ study::StudyKey fake_key(const study::Protocol& protocol, const FakeOptions& opt
   study::StudyKey key = study::make_study_key(study, entropy, options.simulated);
   if (!options.stations.empty()) {
     std::vector<study::Station> stations = study::stations_named(options.stations);
-    study::hand_out_enrolments(stations, 8);
-    study::divide(key, std::move(stations));
+    study::assign_enrolments(stations, 8);
+    study::assign_stations(key, std::move(stations));
   }
   return key;
 }
@@ -104,8 +104,9 @@ void record_trial(record::SessionRecorder& recorder, const FakeSession& session,
   recorder.first_contact(start + milliseconds(500), shown.place.trial);
   const FakeAnswers answers = session.answers ? session.answers : FakeStudy::always_right();
   if (const auto answer = answers(shown)) {
-    recorder.answered(start + milliseconds(4250),
-                      {shown.place.trial, Chosen{position_of(schedule, *answer)}, std::nullopt});
+    recorder.answered(
+        start + milliseconds(4250),
+        {shown.place.trial, ChoiceAnswer{position_of(schedule, *answer)}, std::nullopt});
   } else {
     recorder.timed_out(start + milliseconds(4250), shown.place.trial);
   }

@@ -4,6 +4,9 @@
 #include "support/catch.hpp"
 
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 using namespace touchtrial;
 
@@ -84,9 +87,13 @@ TEST_CASE("device conform checks the program's drivers too, but neither a mouse 
   const json simulated = json::parse(conform(folder, "simulated --json").output);
   CHECK(outcome(simulated, "velocity fits position") == "passed");
   CHECK(outcome(simulated, "interface") == "no such check");
-  for (const std::string options :
-       {"mouse", "simulated --force --yes", "plugn", "simulated --seconds nan"}) {
+  const std::vector<std::pair<std::string, std::string>> refused = {
+      {"mouse", "mouse"},
+      {"simulated --force --yes", "'simulated' --force"},
+      {"plugn", "plugn plugin"},
+      {"simulated --seconds nan", "--seconds nan"}};
+  for (const auto& [options, places] : refused) {
     INFO(options);
-    check_refused(conform(folder, options), 2, {});
+    check_refused(conform(folder, options), 2, {places});
   }
 }

@@ -127,5 +127,6 @@ TEST_CASE("device fit refuses a certificate that no session takes") {
 TEST_CASE("device fit refuses a device or an orientation that does not exist") {
   const FitFolder folder(200, 200);
   check_refused(folder.fit("--device falcn"), 2, {"falcon"});
-  check_refused(folder.fit("--device falcon --orientation diagonal"), 2, {});
+  check_refused(folder.fit("--device falcon --orientation diagonal"), 2,
+                {"--orientation diagonal"});
 }

@@ -80,7 +80,7 @@ TEST_CASE("device test --watch shows readings without a force") {
   CHECK(phases.at(0).at("phase") == "watch");
   CHECK(phases.at(0).at("ticks") > 0);
   CHECK(phases.at(0).at("greatest_force_n") == 0.0);
-  check_refused(folder.device("test simulated --watch --wall-only"), 2, {});
+  check_refused(folder.device("test simulated --watch --wall-only"), 2, {"--watch", "--wall-only"});
 }
 
 TEST_CASE("device test ends well at q and at a space") {

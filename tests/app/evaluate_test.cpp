@@ -45,6 +45,6 @@ TEST_CASE("evaluate sweeps the fixed orders") {
 TEST_CASE("evaluate refuses bad arguments and an image that is too small for MS-SSIM") {
   const BlotchyFolder folder(160);
   check_refused(folder.type("evaluate @blotchy.png --sweep"), 1, {"blotchy.png: has 160 x 160"});
-  check_refused(folder.type("evaluate"), 2, {});
-  check_refused(folder.type("evaluate @blotchy.png --swep"), 2, {});
+  check_refused(folder.type("evaluate"), 2, {"IMAGE"});
+  check_refused(folder.type("evaluate @blotchy.png --swep"), 2, {"--swep --sweep"});
 }

@@ -187,7 +187,7 @@ TEST_CASE("the key of a study with people is not copied") {
   CHECK(ran.output.find("--key") != std::string::npos);
   CHECK_FALSE(fs::exists(study.in("C.db.key")));
   study.done("verify @C.db --key @cloths.key");
-  check_refused(study.session("P03", {}, "C.db"), 1, {});
+  check_refused(study.session("P03", {}, "C.db"), 1, {"C.db"});
 }
 
 TEST_CASE("a merge of an altered station file ends like its verification") {
@@ -205,8 +205,9 @@ TEST_CASE("a refused merge names the file, and makes none") {
   const SimulatedStations study;
   study.write_study({{"seed", 12}}, "other.json");
   study.done("simulate @other.json --participants 1 --subject @quick.json --db @other.db");
-  check_refused(study.merge({"s1.db", "other.db"}, {"-o", study.in("C.db")}), 1, {});
-  check_refused(study.merge({"s1.db", "one.db"}, {"-o", study.in("C.db")}), 1, {});
+  check_refused(study.merge({"s1.db", "other.db"}, {"-o", study.in("C.db")}), 1,
+                {"s1.db other.db", "[other-study]"});
+  check_refused(study.merge({"s1.db", "one.db"}, {"-o", study.in("C.db")}), 1, {"s1.db one.db"});
   CHECK_FALSE(fs::exists(study.in("C.db")));
   check_refused(study.merge({"s1.db", "s3.db"}, {"-o", study.in("one.db")}), 1, {"one.db: exists"});
   replace_file(study.in("D.db.key"), content(study.in("other.db.key")), FileMode::owner_only);

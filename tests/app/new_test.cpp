@@ -104,16 +104,16 @@ TEST_CASE("without answers, or in a folder with something in it, nothing is writ
   const ProgramResult unanswered = desk.make("felt", {}, "felt\n");  // the questions too
   CHECK(unanswered.exit_code == 2);
   CHECK_THAT(unanswered.errors, holds_text("--protocol"));
-  CHECK_FALSE(is_there(desk.in("felt")));
+  CHECK_FALSE(path_exists(desk.in("felt")));
   fs::create_directory(desk.in("full"));
   replace_file(desk.in("full/notes.txt"), "mine");
-  check_refused(desk.make("full", {"--yes"}), 2, {});
+  check_refused(desk.make("full", {"--yes"}), 2, {"full"});
   check_refused(desk.make("felt", {"--yes", "--name", "a b"}), 2, {"--name"});
   check_refused(desk.make("felt", {"--yes", "--worth", "51"}), 2, {"--worth"});
   check_refused(desk.make("felt", {"--yes", "--pictures", desk.in("nowhere")}), 2, {"--pictures"});
   check_refused(desk.make("felt", {"--yes", "--device", "tuch"}), 2, {"--device"});
   check_refused(desk.make("felt", {"--yes", "--device", "my/own.json"}), 2, {"--device"});
-  CHECK_FALSE(is_there(desk.in("felt")));
+  CHECK_FALSE(path_exists(desk.in("felt")));
 }
 
 TEST_CASE("pictures of a study for a device are as large as the device's room for them") {
@@ -177,7 +177,7 @@ TEST_CASE("photographs are checked at once, and new sizes are asked for if they 
   for (const char* line : {"cloth2.png 120 x 120 200 x 200", "album 3 --size 120"}) {
     CHECK(names_in_order(small.errors, line));
   }
-  CHECK_FALSE(is_there(desk.in("deep")));
+  CHECK_FALSE(path_exists(desk.in("deep")));
 
   // Name, protocol, device, pictures twice, size and crops, people, worth, language, consent,
   // visits, groups.
@@ -198,5 +198,5 @@ TEST_CASE("a new study that fails leaves no folder behind") {
   check_refused(run_touchtrial_limited(desk.folder.path(), "-f 1",
                                        {"new", desk.in("above/felt"), "--yes", "--size", "48"}),
                 1, {});
-  CHECK_FALSE(is_there(desk.in("above")));
+  CHECK_FALSE(path_exists(desk.in("above")));
 }

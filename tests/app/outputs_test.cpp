@@ -37,6 +37,9 @@ const std::vector<Output> kReplaced = {
     {"stimuli sheet", "--output", "@cloths.json --output @s.html", "s.html"},
     {"export", "--out", "@cloths.db --out @e", "e/trials.csv"},
     {"report", "--out", "@cloths.db --cues no --out @r", "r/report.html"},
+    {"power", "--figure",
+     "@cloths.json --mean 0.5 --sd-between 0.1 --participants 3,4 --runs 10 --figure @c",
+     "c/power-curve.csv"},
     {"device accept", "--certificate", "--emulate touch --certificate @c.json", "c.html"},
     {"device test", "--fault-record", "falcon --fault-record @o.csv", "o.csv", Runs::to_refusal},
 };
@@ -186,7 +189,7 @@ TEST_CASE(
       CHECK(content(place.string() + ".1") == kMine);
       CHECK(content(place) != kMine);
       succeeded(workshop.write(output));
-      CHECK_FALSE(is_there(place.string() + ".2"));
+      CHECK_FALSE(path_exists(place.string() + ".2"));
       std::ofstream(place, std::ios::app) << kMine;
       check_kept(workshop.write(output), place, "--force");
     }
@@ -221,8 +224,8 @@ TEST_CASE(
   const std::string line = "stimuli import @album --study @mine.json --size 60 --crops 1";
   workshop.done(line);
   workshop.done(line, {"--force"});
-  CHECK_FALSE(is_there(workshop.path() / "mine.json.1"));
-  CHECK_FALSE(is_there(workshop.path() / "mine.pictures.1"));
+  CHECK_FALSE(path_exists(workshop.path() / "mine.json.1"));
+  CHECK_FALSE(path_exists(workshop.path() / "mine.pictures.1"));
 
   scribble(workshop.path() / "mine.json");
   scribble(workshop.path() / "mine.pictures" / "notes.txt");
@@ -231,7 +234,7 @@ TEST_CASE(
   workshop.done(line, {"--force"});
   CHECK(content(workshop.path() / "mine.json.1") == kMine);
   CHECK(content(workshop.path() / "mine.pictures.1" / "notes.txt") == kMine);
-  CHECK_FALSE(is_there(workshop.path() / "mine.pictures" / "notes.txt"));
+  CHECK_FALSE(path_exists(workshop.path() / "mine.pictures" / "notes.txt"));
   workshop.done("prepare @mine.json");
 }
 
@@ -245,7 +248,7 @@ TEST_CASE("settings are not written through a link") {
   const EnvironmentVariable settings("XDG_CONFIG_HOME",
                                      (workshop.path() / "home" / ".config").c_str());
   workshop.done("report @cloths.db --key @moved.key");
-  CHECK_FALSE(is_there(workshop.path() / "target"));
+  CHECK_FALSE(path_exists(workshop.path() / "target"));
 }
 
 TEST_CASE("a run that is refused leaves nothing: no database, no pack, no head") {

@@ -38,11 +38,24 @@ TEST_CASE("power refuses invalid arguments in one line") {
     INFO(sizes);
     check_refused(power(study, "--participants " + sizes), 2, {"--participants"});
   }
-  check_refused(power(study, "--participants -8"), 2, {});
+  check_refused(power(study, "--participants -8"), 2, {"--participants"});
   for (const char* runs : {"0", "-1", "1.5", "1000000000", "many"}) {
     check_refused(power(study, "--participants 3,5", runs), 2, {"--runs"});
   }
   check_refused(power(study, "--methods adaptive,edge"), 2, {"--methods"});
   check_refused(study.type("power"), 2, {"STUDY"});
   check_refused(study.type("power @none.json"), 2, {"none.json"});
+}
+
+TEST_CASE("power writes its curve into a folder and keeps foreign files there") {
+  const StudyFolder study;
+  succeeded(power(study, "--participants 3,5 --figure @curve"));
+  const std::filesystem::path folder = study.path() / "curve";
+  for (const char* ending : {"csv", "gp", "py", "r"}) {
+    CHECK(std::filesystem::exists(folder / ("power-curve." + std::string(ending))));
+  }
+  CHECK_THAT(content(folder / "power-curve.csv"), holds_text(",interval,simulated studies,3,"));
+  replace_file(folder / "power-curve.csv", "mine");
+  check_refused(power(study, "--participants 3,5 --figure @curve"), 1, {"power-curve.csv"});
+  CHECK(content(folder / "power-curve.csv") == "mine");
 }

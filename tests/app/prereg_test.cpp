@@ -63,7 +63,7 @@ TEST_CASE("prereg writes the registration, the design and the hashes, and no sec
   CHECK(study.type("prereg @cloths.json").output == result.output);
   study.done("prereg @cloths.json -o @page.md");
   CHECK(content(study.path() / "page.md") == result.output);
-  check_refused(study.type("prereg @cloths.json -o @page.md"), 2, {});
+  check_refused(study.type("prereg @cloths.json -o @page.md"), 2, {"page.md"});
 }
 
 TEST_CASE("prereg refuses a study that is not prepared, or has changed since") {

@@ -217,7 +217,8 @@ TEST_CASE("an excluded participant is left out of outcomes, and the reason is re
   check_refused(study.people("exclude P9 --reason who"), 1, {"study.db", "P9"});
   check_refused(study.people("exclude P001 --reason ''"), 1, {"reason"});
   check_refused(study.people("exclude P001"), 2, {"--reason"});
-  check_refused(study.type("exclude @none.db --participant P001 --reason gone"), 1, {});
+  check_refused(study.type("exclude @none.db --participant P001 --reason gone"), 1,
+                {"none.db", "[no-database]"});
   CHECK(study.outcomes().at("trials") == 3 * 6);
 }
 
@@ -234,7 +235,7 @@ TEST_CASE("an exclusion after outcomes were seen is accepted only if that is rec
 TEST_CASE("a replacement inherits the participant's enrolment number and its schedule") {
   const PeopleStudy study;
   check_refused(study.people("replace P002 --with P021 --reason ill"), 1,
-                {"P002", "complete", "stopped"});
+                {"P002", "complete"});
   succeeded(study.people("exclude P002 --reason ill"));
   check_refused(study.people("replace P002 --with P003 --reason ill"), 1, {"P003"});
   check_refused(study.people("replace P002 --with 'no id' --reason ill"), 1, {"'no id'"});
@@ -242,7 +243,7 @@ TEST_CASE("a replacement inherits the participant's enrolment number and its sch
   check_refused(study.people("replace P002 --reason ill"), 2, {"--with"});
   const ProgramResult replaced = succeeded(study.people("replace P002 --with P021 --reason ill"));
   CHECK(replaced.output.find("P021") != std::string::npos);
-  check_refused(study.people("replace P002 --with P022 --reason ill"), 1, {});
+  check_refused(study.people("replace P002 --with P022 --reason ill"), 1, {"P002", "P021"});
 
   succeeded(study.session("P005"));
   succeeded(study.session("P021"));
@@ -422,13 +423,13 @@ TEST_CASE("the safety record of an erased person is erased by a command of its o
   const PeopleStudy study;
   const int session = session_of(study.store(), "P001").session;
   const Bytes safety = study.store().wrapped_keys(session).safety.value();
-  check_refused(study.people("withdraw P001 --erase-safety"), 1, {});
+  check_refused(study.people("withdraw P001 --erase-safety"), 1, {"withdraw --erase"});
   succeeded(study.people("withdraw P001 --erase --reason 'asked to'"));
   CHECK(files_with(study, safety).contains("study.db"));
   // A simulated session was in 1970, so that its years have passed.
   succeeded(study.people("withdraw P001 --erase-safety"));
   CHECK(files_with(study, safety).empty());
-  check_refused(study.people("withdraw P001 --erase-safety"), 1, {});
+  check_refused(study.people("withdraw P001 --erase-safety"), 1, {"P001"});
   check_verified(study);
 }
 
@@ -452,7 +453,8 @@ TEST_CASE("one participant's outcomes are exported after a recorded look at them
   const json quality = study.quality();
   CHECK(quality.at("blinded") == true);
   CHECK(quality.at("collection").at("looks").at(0).at("reason") == "asked for the data");
-  check_refused(study.people("exclude P002 --reason 'bad figures'"), 1, {});
+  check_refused(study.people("exclude P002 --reason 'bad figures'"), 1,
+                {"P002", "--after-outcomes"});
   succeeded(study.people("exclude P001 --reason asleep"));
   check_verified(study);
 }
@@ -464,7 +466,7 @@ TEST_CASE("notes and deviations are on the file's chain, before and after closin
   check_refused(study.people("note P003 ''"), 1, {"study.db"});
   check_refused(study.people("note P003 --deviation no-curtian torn"), 2,
                 {"no-curtain", "no-placement", "no-day-sheet-NUMBER", "--own-code"});
-  check_refused(study.people("note P003 --deviation sneezed twice"), 2, {});
+  check_refused(study.people("note P003 --deviation sneezed twice"), 2, {"sneezed no-curtain"});
   CHECK_THAT(study.type("note --help").output, holds_text("practice-not-passed"));
   check_refused(study.people("note P9 who"), 1, {"P9"});
   check_refused(study.people("note P003"), 2, {"TEXT"});

@@ -83,7 +83,7 @@ TEST_CASE("run makes the database, acknowledges every response, and is refused a
     CHECK(first.output.find(label) == std::string::npos);
     CHECK(first.errors.find(label) == std::string::npos);
   }
-  check_refused(run(study, "P01", {"--on-existing", "resume"}), 1, {});
+  check_refused(run(study, "P01", {"--on-existing", "resume"}), 1, {"P01", "session 1"});
   succeeded(run(study, "P02"));
   check_balanced(study, 2);
 }
@@ -131,7 +131,7 @@ TEST_CASE("a run that is refused leaves nothing, and the corrected command runs"
     INFO(result.errors);
     CHECK(result.exit_code != 0);
     CHECK(line_count(result.errors) >= 1);
-    CHECK_THAT(result.errors, !holds_text("lies at this station"));  // only a session records it
+    CHECK_THAT(result.errors, !holds_text("is at this station"));  // only a session records it
     CHECK_THAT(result.errors, holds_text(part));
     CHECK(files() == before);
   };
@@ -194,7 +194,7 @@ TEST_CASE("stations use their own numbers of a plan, and a replacement uses its 
   succeeded(run(study, "P01", {"--station", "cellar"}));
   check_refused(run(study, "P02", {"--station", "attic"}), 1, {"station cellar"});
   succeeded(run(study, "P02", {"--station", "cellar"}));
-  check_refused(run(study, "P03", {"--station", "cellar"}), 2, {});
+  check_refused(run(study, "P03", {"--station", "cellar"}), 2, {"cellar", "--extend"});
   succeeded(plan({"6", "--extend"}));
   succeeded(run(study, "P03", {"--station", "cellar"}));
   study.done("exclude @db --participant P01 --reason test");

@@ -1,4 +1,4 @@
-// A machine with too little memory: one line, and nothing half made.
+// A machine with out of memory: one line, and nothing half made.
 #include "app/study_folder.hpp"
 #include "support/catch.hpp"
 #include "support/sanitized.hpp"
@@ -46,7 +46,7 @@ TEST_CASE("whatever memory is missing, a command ends with one line and leaves n
       ++refused;
       CHECK(result.exit_code == 1);
       CHECK(line_count(result.errors) == 1);
-      if (!command.made.empty()) CHECK_FALSE(is_there(study.path() / command.made));
+      if (!command.made.empty()) CHECK_FALSE(path_exists(study.path() / command.made));
       for (const auto& entry : fs::directory_iterator(study.path())) {
         CHECK_FALSE(entry.path().extension() == ".tmp");
       }

@@ -107,12 +107,13 @@ TEST_CASE("status of a station of several names the station, and another study i
   CHECK(line.find(" " + folder.in("cloths.json") + " ") != std::string::npos);
   CHECK(line.ends_with(" --station right"));
   folder.write_study({{"study", "others"}}, "others.json");
-  check_refused(folder.type("status @study.db --study @others.json"), 2, {});
+  check_refused(folder.type("status @study.db --study @others.json"), 2,
+                {"others.json", "--study"});
 }
 
 TEST_CASE("before the first session status lists the consents and has the first lines to copy") {
   const StudyFolder folder;
-  check_refused(folder.type("status @study.db"), 1, {});
+  check_refused(folder.type("status @study.db"), 1, {"study.db", "--study"});
   folder.done("prepare @cloths.json");
   const json first = status_of(folder);
   CHECK(first["study"] == "cloths");

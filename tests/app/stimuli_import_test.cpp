@@ -63,7 +63,7 @@ TEST_CASE("import prints a summary, and refuses invalid arguments") {
   CHECK_THAT(made.output, holds_text("CC0-1.0"));
   CHECK_THAT(made.output, holds_text("12 x 12 mm"));
   check_refused(album.import_with({}), 2, {"mine.json"});
-  check_refused(album.import_with({"--pixels-per-mm", "many"}), 2, {});
+  check_refused(album.import_with({"--pixels-per-mm", "many"}), 2, {"--pixels-per-mm"});
   check_refused(album.import_with({"--equalise", "most"}), 2, {"most"});
   const ProgramResult many =
       album.type("stimuli import @album --study @other.json --size 60 --crops 90");
@@ -110,7 +110,7 @@ TEST_CASE("a contact sheet is drawn with a key that is kept elsewhere") {
   fs::rename(album.in("mine.key"), album.in("drawer/stick/away.key"));
   check_refused(album.sheet("sheet.html"), 1, {});
   succeeded(album.sheet("sheet.html", {"--key", album.in("drawer/stick/away.key")}));
-  CHECK(is_there(album.in("sheet.html")));
+  CHECK(path_exists(album.in("sheet.html")));
 }
 
 TEST_CASE("the table of an import says when its levels are those before equalising") {
@@ -125,11 +125,11 @@ TEST_CASE("without its key, or with another study's key, there is no sheet") {
   succeeded(album.import_with({}));
   check_refused(album.sheet("sheet.html"), 1, {});
   album.done("prepare @mine.json");
-  check_refused(album.sheet("sheet.html", {"--key", album.in("other.key")}), 1, {});
+  check_refused(album.sheet("sheet.html", {"--key", album.in("other.key")}), 1, {"other.key"});
   check_refused(album.sheet("sheet.svg"), 2, {"sheet.svg", ".html"});
   write_png(album.in("mine.pictures/D1-1.png"), photograph(3));
   check_refused(album.sheet("sheet.html"), 3, {});
   succeeded(album.import_with({"--force", "--seed", "2"}));
   check_refused(album.sheet("sheet.html"), 3, {});
-  CHECK_FALSE(is_there(album.in("sheet.html")));
+  CHECK_FALSE(path_exists(album.in("sheet.html")));
 }

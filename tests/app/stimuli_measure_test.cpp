@@ -50,6 +50,6 @@ TEST_CASE(
   make_folder(folder.path() / "empty");
   check_refused(folder.type("stimuli measure @tiny.png"), 1, {"tiny.png", "32 px"});
   check_refused(folder.type("stimuli measure @text.png"), 1, {"text.png"});
-  check_refused(folder.type("stimuli measure @empty"), 1, {});
+  check_refused(folder.type("stimuli measure @empty"), 1, {"empty"});
   check_refused(folder.type("stimuli measure @none.png"), 2, {"none.png"});
 }

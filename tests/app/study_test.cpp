@@ -122,7 +122,7 @@ TEST_CASE("before unblinding, report and export show quality and no outcome") {
   }
   study.done("export @a.db --out @csv");
   for (const std::string format : {"r", "events"}) {
-    check_refused(study.type("export @a.db --out @none --format " + format), 1, {});
+    check_refused(study.type("export @a.db --out @none --format " + format), 1, {"unblind"});
     CHECK_FALSE(fs::exists(study.path() / "none"));
   }
   const std::string trials = content(study.path() / "csv" / "trials.csv");
@@ -214,12 +214,12 @@ TEST_CASE("outcomes need the study's own key") {
   const StudyFolder study;
   succeeded(study.simulate("a.db"));
   fs::rename(study.path() / "a.db.key", study.path() / "elsewhere.key");
-  check_refused(study.type("report @a.db"), 1, {});
+  check_refused(study.type("report @a.db"), 1, {"a.db.key --key"});
   study.done("report @a.db --key @elsewhere.key");
 
   study.write_study({{"seed", 12}}, "other.json");
   study.done("simulate @other.json --participants 1 --db @other.db --subject @quick.json");
-  check_refused(study.type("report @a.db --key @other.db.key"), 3, {});
+  check_refused(study.type("report @a.db --key @other.db.key"), 3, {"other.db.key"});
   CHECK(study.type("verify @a.db --key @other.db.key").exit_code == 3);
 }
 
@@ -256,7 +256,7 @@ TEST_CASE("simulate does not replace a key that belongs to something else") {
   const StudyFolder study;
   study.done("prepare @cloths.json");
   const std::string key = content(study.path() / "cloths.key");
-  check_refused(study.simulate("cloths"), 1, {});  // its key would be cloths.key
+  check_refused(study.simulate("cloths"), 1, {"cloths.key"});
   CHECK(content(study.path() / "cloths.key") == key);
   CHECK_FALSE(fs::exists(study.path() / "cloths"));
 }
@@ -272,6 +272,6 @@ TEST_CASE("a seed that is not a 64-bit whole number is refused") {
   const StudyFolder study;
   for (const std::string seed : {"-1", "18446744073709551616", "0x10", "1.5", ""}) {
     INFO(seed);
-    check_refused(study.simulate("a.db", {}, seed), 2, {});
+    check_refused(study.simulate("a.db", {}, seed), 2, {"--seed"});
   }
 }

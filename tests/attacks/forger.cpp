@@ -86,7 +86,7 @@ void AttackedStudy::begin_open_session() {
   sink_ = store().begin_session(
       open_session(), record::wrap_participant_key(station_.investigator_box, open_session(), own_),
       [] { return seconds(3); },
-      record::keep_participant_key(station_.station.secret, open_session(), own_));
+      record::seal_station_copy(station_.station.secret, open_session(), own_));
   recorder_.emplace(open_session(), own_, *sink_);
   schedule_ =
       study::make_schedule(station_.study, station_.draw_of(kEnrolment, study::Draws::people));
@@ -106,8 +106,9 @@ void AttackedStudy::answer(int trials) {
     recorder_->presented(at, shown.place.trial, shown.place.block);
     recorder_->first_contact(at + seconds(1), shown.place.trial);
     recorder_->answered(
-        at + seconds(4), {shown.place.trial, Chosen{answered_ % 3}, std::nullopt},
-        recorder_->packed({.trial = shown.place.trial, .rate_hz = 1000.0, .trace = {}}, {}, trace));
+        at + seconds(4), {shown.place.trial, ChoiceAnswer{answered_ % 3}, std::nullopt},
+        recorder_->pack_evidence({.trial = shown.place.trial, .rate_hz = 1000.0, .trace = {}}, {},
+                                 trace));
   }
 }
 

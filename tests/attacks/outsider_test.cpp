@@ -179,8 +179,8 @@ bool can_resume(const AttackedStudy& study) {
       record::StudyStore::open(study.database(), record::StudyStore::Access::read_only);
   const std::optional<Bytes> kept = store.kept_key(AttackedStudy::open_session());
   if (!kept) return false;
-  const auto own = record::kept_participant_key(study.station().station.secret,
-                                                AttackedStudy::open_session(), *kept);
+  const auto own = record::open_station_copy(study.station().station.secret,
+                                             AttackedStudy::open_session(), *kept);
   if (!own) return false;
   const std::vector<record::Event> events = store.events(AttackedStudy::open_session());
   return std::ranges::all_of(events, [&](const record::Event& event) {

@@ -162,7 +162,7 @@ TEST_CASE("another investigator's halves in a station's file do not fit the pack
   study.write(list);
   CHECK(study.outcome(forged) == Outcome::possible);
   note("another investigator in a station's file and its pack", Outcome::possible);
-  CHECK_THROWS_AS(session::require_opens(study.key(), forged, engine::Pack(study.pack())),
+  CHECK_THROWS_AS(session::require_decryptable(study.key(), forged, engine::Pack(study.pack())),
                   VerificationError);
   note("the same, at `key check`", Outcome::named);
 }

@@ -61,7 +61,7 @@ TEST_CASE("a link in the place of a file that lies beside a database is not writ
       INFO(beside);
       CHECK(fs::is_symlink(file));
       if (is_dangling) {
-        CHECK_FALSE(is_there(target));
+        CHECK_FALSE(path_exists(target));
       } else {
         CHECK(text_of(read_file(target)) == "mine");
       }

@@ -165,7 +165,7 @@ TEST_CASE("a station opens its open session, and none that has ended") {
   }
   note("a session that has ended, opened with the station's file", Outcome::refused, 3);
   const auto kept =
-      record::kept_participant_key(study.station().station.secret, 4, store.kept_key(4).value());
+      record::open_station_copy(study.station().station.secret, 4, store.kept_key(4).value());
   REQUIRE(kept);
   CHECK(opens(store.events(4), {*kept}));
   // Whoever keeps that key opens the session for ever.

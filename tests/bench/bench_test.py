@@ -69,11 +69,11 @@ class Cases(unittest.TestCase):
 class Comparison(unittest.TestCase):
     def test_what_is_slower_by_more_than_a_tenth_is_named(self):
         before = filter_row(0.4)
-        self.assertEqual(bench.slower(results(filter_row(0.43)), results(before)), [])
-        self.assertEqual(len(bench.slower(results(filter_row(0.45)), results(before))), 1)
-        self.assertEqual(bench.slower(results({**filter_row(0.45), "what": "another"}), results(before)), [])
+        self.assertEqual(bench.slower_lines(results(filter_row(0.43)), results(before)), [])
+        self.assertEqual(len(bench.slower_lines(results(filter_row(0.45)), results(before))), 1)
+        self.assertEqual(bench.slower_lines(results({**filter_row(0.45), "what": "another"}), results(before)), [])
         bounded = {**before, "of_bound": 1.5}
-        self.assertEqual(len(bench.slower(results({**before, "of_bound": 1.7}), results(bounded))), 1)
+        self.assertEqual(len(bench.slower_lines(results({**before, "of_bound": 1.7}), results(bounded))), 1)
 
 
 class Tables(unittest.TestCase):
@@ -95,14 +95,14 @@ class Tables(unittest.TestCase):
 
     def test_a_section_is_replaced_alone_and_again(self):
         page = "# Title\n\n<!-- goals -->\nold\n<!-- end of goals -->\n\nrest\n"
-        once = bench.with_section(page, "goals", "new\n")
+        once = bench.replace_section(page, "goals", "new\n")
         self.assertEqual(once, "# Title\n\n<!-- goals -->\n\nnew\n\n<!-- end of goals -->\n\nrest\n")
-        self.assertEqual(bench.with_section(once, "goals", "new\n"), once)
+        self.assertEqual(bench.replace_section(once, "goals", "new\n"), once)
 
     def test_a_page_without_the_section_is_refused(self):
         for page in ("# Title\n", "<!-- goals -->\n", "<!-- end of goals -->\n<!-- goals -->\n"):
             with self.assertRaises(SystemExit):
-                bench.with_section(page, "goals", "new\n")
+                bench.replace_section(page, "goals", "new\n")
 
 
 if __name__ == "__main__":

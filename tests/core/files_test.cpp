@@ -54,8 +54,8 @@ TEST_CASE("a folder is made with those above it, and a file in its place is name
   CHECK(fs::is_directory(folder.path() / "a" / "b"));
   replace_file(folder.path() / "file", "text");
   CHECK_THROWS_WITH(make_folder(folder.path() / "file" / "b"), holds_text("file"));
-  CHECK(is_there(folder.path() / "file"));
-  CHECK_FALSE(is_there(folder.path() / "file" / "b"));
+  CHECK(path_exists(folder.path() / "file"));
+  CHECK_FALSE(path_exists(folder.path() / "file" / "b"));
 }
 
 TEST_CASE("a missing file, a folder and a file over the limit are refused by name") {

@@ -33,8 +33,8 @@ TEST_CASE("a label may have letters of any alphabet, but a word of Latin ones no
     CAPTURE(label);
     CHECK_FALSE(fault_of_label(label).empty());
   }
-  CHECK((alphabets_of("cork").latin && !alphabets_of("cork 9").other));
-  CHECK((!alphabets_of(kCyrillic).latin && alphabets_of(kCyrillic).other));
+  CHECK((alphabets_of("cork").latin && !alphabets_of("cork 9").non_latin));
+  CHECK((!alphabets_of(kCyrillic).latin && alphabets_of(kCyrillic).non_latin));
 }
 
 TEST_CASE("labels of several alphabets are to be looked at, those of one are not") {

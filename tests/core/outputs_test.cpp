@@ -71,9 +71,9 @@ TEST_CASE("an output replaces only an unchanged output") {
   CHECK(text_in(place) == "second");
 
   scribble(place, "mine");
-  CHECK(origin_of(place) == Origin::others);
+  CHECK(origin_of(place) == Origin::foreign);
   CHECK_THROWS_WITH(write_output(place, "third"), holds_text("--force"));
-  CHECK_THROWS_AS(require_output_place(place), FileError);
+  CHECK_THROWS_AS(require_output_path(place), FileError);
   CHECK(text_in(place) == "mine");
   CHECK(files_in(folder.path()) == 1);
   write_output(place, "mine");  // nothing is lost
@@ -89,7 +89,7 @@ TEST_CASE("a pipe or a device is never moved away") {
   REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
   const Keeping keeping;
   CHECK_THROWS_AS(write_output(pipe, "text"), FileError);
-  CHECK_THROWS_AS(clear_output_place(pipe), FileError);
+  CHECK_THROWS_AS(clear_output_path(pipe), FileError);
   CHECK(fs::is_fifo(pipe));
 }
 
@@ -99,7 +99,7 @@ TEST_CASE("a file in the way is renamed to the first free number, on request") {
   Keeping keeping;
   for (const std::string mine : {"mine", "mine again"}) {
     scribble(place, mine);
-    require_output_place(place);
+    require_output_path(place);
     write_output(place, "ours");
     CHECK(text_in(place) == "ours");
   }
@@ -108,7 +108,7 @@ TEST_CASE("a file in the way is renamed to the first free number, on request") {
   CHECK(keeping.kept == std::vector<std::pair<std::string, std::string>>{{"a.txt", "a.txt.1"},
                                                                          {"a.txt", "a.txt.2"}});
   fs::create_directory(folder.path() / "pictures");
-  clear_output_place(folder.path() / "pictures/");
+  clear_output_path(folder.path() / "pictures/");
   CHECK(fs::is_directory(folder.path() / "pictures.1"));
 }
 
@@ -124,7 +124,7 @@ TEST_CASE("nothing is written through a link, whatever it leads to") {
     CHECK_THROWS_WITH(write_output(link, "ours"), names_both);
     CHECK_THROWS_WITH(replace_file(link, "ours"), names_both);
     CHECK_THROWS_WITH(refuse_link(link), names_both);
-    CHECK(is_there(target) == !is_dangling);
+    CHECK(path_exists(target) == !is_dangling);
   }
   CHECK(text_in(target) == "mine");
   fs::create_directory(folder.path() / "real");
@@ -150,7 +150,7 @@ TEST_CASE("a complete file is moved to an output's place by the same rule") {
     scribble(made, text);
     move_to_output(made, place);
     CHECK(text_in(place) == text);
-    CHECK_FALSE(is_there(made));
+    CHECK_FALSE(path_exists(made));
   }
   scribble(place, "mine");
   scribble(made, "third");
@@ -172,7 +172,7 @@ TEST_CASE(
     CHECK(files_in(below) == 3);
     write_output(below / "a.txt", "whole");
     CHECK(files_in(below) == 4);
-    CHECK(is_there(living.path()));
+    CHECK(path_exists(living.path()));
   }
 }
 

@@ -120,7 +120,7 @@ TEST_CASE("a lab's slew limit does not keep a force from being let go") {
   device::LabLimits lab{.max_slew_n_per_s = 1.0};
   const device::SafetyLimits limits = device::stricter_of({}, lab);
   CHECK(limits.max_slew_n_per_s == limits.max_force_n / device::kMaxReleaseS);
-  CHECK(device::is_sound(limits));
+  CHECK(device::are_valid(limits));
 }
 
 TEST_CASE("a lab's continuous force holds if none is known or the known one is larger") {
@@ -154,12 +154,12 @@ TEST_CASE("settings come from the user's folder unless a file is named") {
   const TempFolder folder;
   const EnvironmentVariable own("XDG_CONFIG_HOME", folder.path().c_str());
   CHECK(device::default_device_settings_path() == folder.path() / "touchtrial" / "devices.json");
-  CHECK(device::device_settings_for("").falcon.serial.empty());
+  CHECK(device::load_device_settings("").falcon.serial.empty());
   make_folder(folder.path() / "touchtrial");
   replace_file(device::default_device_settings_path(), R"({"falcon": {"serial": "usual"}})");
   replace_file(folder.path() / "mine.json", R"({"falcon": {"serial": "mine"}})");
-  CHECK(device::device_settings_for("").falcon.serial == "usual");
-  CHECK(device::device_settings_for(folder.path() / "mine.json").falcon.serial == "mine");
+  CHECK(device::load_device_settings("").falcon.serial == "usual");
+  CHECK(device::load_device_settings(folder.path() / "mine.json").falcon.serial == "mine");
 }
 
 }  // namespace touchtrial

@@ -72,7 +72,7 @@ TEST_CASE("a float texture of the cited extractors is the double one rounded") {
 TEST_CASE("the cited extractors give the enhanced image and no other by-product") {
   const GreyImage image = cloth_image({12, 12});
   for (const Method method : {Method::gaussian, Method::median, Method::edge, Method::luminance}) {
-    const auto result = extract_texture<double>(image, options_of(method), WantedPlanes::all());
+    const auto result = extract_texture<double>(image, options_of(method), RequestedPlanes::all());
     CHECK(result.enhanced.at(5, 6) == image.at(5, 6) + result.texture.at(5, 6));
     CHECK(result.order.empty());
     CHECK(result.csgv.empty());

@@ -69,20 +69,20 @@ TEST_CASE("a sweep compares the adaptive texture with every fixed order") {
   const GreyImage adaptive =
       engine::texture_picture(engine::extract_texture<double>(image, {}).texture);
   for (const std::size_t i : {std::size_t{0}, std::size_t{12}}) {
-    const engine::OrderFigures& figures = evaluation.orders[i];
+    const engine::OrderEvaluation& figures = evaluation.orders[i];
     const GreyImage fixed = fixed_picture(image, figures.order);
     CHECK(figures.entropy == engine::entropy(fixed));
     CHECK(figures.ms_ssim == engine::ms_ssim<double>(adaptive, fixed).unit);
     CHECK(figures.ms_ssim_wang == engine::ms_ssim<double>(adaptive, fixed).wang);
   }
-  for (const engine::OrderFigures& figures : evaluation.orders) {
+  for (const engine::OrderEvaluation& figures : evaluation.orders) {
     CHECK(engine::closest_order(evaluation).ms_ssim >= figures.ms_ssim);
   }
 }
 
 TEST_CASE("for a flat image every fixed order gives the adaptive texture") {
   const engine::Evaluation evaluation = engine::evaluate_image(flat_image({161, 161}, 77), true);
-  for (const engine::OrderFigures& figures : evaluation.orders) {
+  for (const engine::OrderEvaluation& figures : evaluation.orders) {
     CHECK(figures.ms_ssim == 1.0);
     CHECK(figures.entropy == 0.0);
   }

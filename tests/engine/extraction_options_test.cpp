@@ -172,7 +172,7 @@ ExtractionOptions adaptive_with(int levels, Gradient gradient, Combine combine) 
 }
 
 void check_csgv(const GreyImage& image, int levels, Gradient gradient, Combine combine) {
-  const WantedPlanes wanted{.csgv = true, .order = true};
+  const RequestedPlanes wanted{.csgv = true, .order = true};
   const auto result =
       extract_texture<double>(image, adaptive_with(levels, gradient, combine), wanted);
   const Plane<double> expected =
@@ -220,7 +220,7 @@ TEST_CASE("every norm agrees with its definition at adaptive orders") {
   const GreyImage image = cloth_image({41, 30});
   for (const auto& [norm, name] : {std::pair{Norm::sum, "sum"}, std::pair{Norm::none, "none"}}) {
     ExtractionOptions options{.norm = norm};
-    const auto result = extract_texture<double>(image, options, WantedPlanes::all());
+    const auto result = extract_texture<double>(image, options, RequestedPlanes::all());
     CHECK(largest_difference(result.texture, reference::texture(image, result.order, 2, name)) <
           1e-8);
   }

@@ -72,7 +72,7 @@ TEST_CASE("the adaptive texture agrees with its definition on real stimulus size
 
 TEST_CASE("the adaptive method gives its by-products in the image's shape") {
   const GreyImage image = cloth_image({9, 12});
-  const auto result = extract_texture<double>(image, adaptive_options(), WantedPlanes::all());
+  const auto result = extract_texture<double>(image, adaptive_options(), RequestedPlanes::all());
   const Plane<double> csgv = reference::csgv(image);
   CHECK(largest_relative_difference(result.csgv, csgv) < 1e-11);
   CHECK(largest_difference(result.order, reference::order_map(csgv)) < 1e-12);
@@ -92,7 +92,8 @@ TEST_CASE("the adaptive method gives its by-products in the image's shape") {
 
 TEST_CASE("the fixed method uses one order for all pixels") {
   const GreyImage image = noise_image({13, 12});
-  const auto result = extract_texture<double>(image, fixed_options(0.55, 3), WantedPlanes::all());
+  const auto result =
+      extract_texture<double>(image, fixed_options(0.55, 3), RequestedPlanes::all());
   CHECK(result.order == Plane<double>(13, 12, 0.55));
   CHECK(largest_difference(result.texture, reference::texture(image, result.order, 3)) <
         kDoubleTolerance);
@@ -103,7 +104,7 @@ TEST_CASE("the fixed method uses one order for all pixels") {
 TEST_CASE("tv-gabor splits an image into cartoon and texture") {
   const GreyImage image = cloth_image({20, 24});
   ExtractionOptions options{.method = Method::tv_gabor};
-  const auto result = extract_texture<double>(image, options, WantedPlanes::all());
+  const auto result = extract_texture<double>(image, options, RequestedPlanes::all());
   CHECK(result.converged);
   CHECK(result.steps > 0);
   CHECK(result.gap <= options.tv_gabor.gap);

@@ -25,7 +25,7 @@ TEST_CASE("the integer sample rules are the rounded formulas") {
   }
   for (std::uint32_t alpha = 0; alpha <= 255; ++alpha) {
     for (std::uint32_t c = 0; c <= 255; ++c) {
-      REQUIRE(over_black(c, alpha) ==
+      REQUIRE(composite_on_black(c, alpha) ==
               static_cast<std::uint32_t>(std::floor(c * alpha / 255.0 + 0.5)));
     }
   }

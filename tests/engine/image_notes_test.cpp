@@ -132,13 +132,13 @@ TEST_CASE("a picture is turned upright by each of the eight orientations") {
     }
     return image;
   };
-  CHECK(upright(seen, 1) == seen);
-  CHECK(upright(stored(2, 3, "321654"), 2) == seen);
-  CHECK(upright(stored(2, 3, "654321"), 3) == seen);
-  CHECK(upright(stored(2, 3, "456123"), 4) == seen);
-  CHECK(upright(stored(3, 2, "142536"), 5) == seen);
-  CHECK(upright(stored(3, 2, "362514"), 6) == seen);
-  CHECK(upright(stored(3, 2, "635241"), 7) == seen);
-  CHECK(upright(stored(3, 2, "415263"), 8) == seen);
-  CHECK(upright(seen, 0) == seen);
+  CHECK(turn_upright(seen, 1) == seen);
+  CHECK(turn_upright(stored(2, 3, "321654"), 2) == seen);
+  CHECK(turn_upright(stored(2, 3, "654321"), 3) == seen);
+  CHECK(turn_upright(stored(2, 3, "456123"), 4) == seen);
+  CHECK(turn_upright(stored(3, 2, "142536"), 5) == seen);
+  CHECK(turn_upright(stored(3, 2, "362514"), 6) == seen);
+  CHECK(turn_upright(stored(3, 2, "635241"), 7) == seen);
+  CHECK(turn_upright(stored(3, 2, "415263"), 8) == seen);
+  CHECK(turn_upright(seen, 0) == seen);
 }

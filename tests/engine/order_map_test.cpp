@@ -75,7 +75,7 @@ TEST_CASE(
     "a megapixel of orders is made by several threads at once, to the same digits as by one") {
   const engine::SubBands fine = engine::daub4_sub_bands(cloth_image({2021, 2007}));
   const std::array<engine::SubBands, 2> levels{fine, engine::daub4_sub_bands(fine.ll)};
-  REQUIRE(static_cast<std::int64_t>(fine.ll.size()) >= engine::kThreadsFromPixels);
+  REQUIRE(static_cast<std::int64_t>(fine.ll.size()) >= engine::kMinParallelPixels);
   const auto combine = GENERATE(engine::Combine::sum, engine::Combine::l2, engine::Combine::max);
   const auto orders = [&] {
     return engine::order_map(engine::composite_gradient(levels, engine::Gradient::sobel, combine));

@@ -139,9 +139,9 @@ TEST_CASE("picture, force and enhanced image of an extraction are those of its c
   const GreyImage image = cloth_image({30, 42});
   const engine::ExtractionOptions options = scrambled_by(engine::Method::adaptive, 2);
   engine::Extraction<float> result =
-      engine::extract_texture<float>(image, {}, engine::WantedPlanes::all());
+      engine::extract_texture<float>(image, {}, engine::RequestedPlanes::all());
   const Plane<float> order = result.order;
-  engine::extract_texture_into(image, options, engine::WantedPlanes::all(), result);
+  engine::extract_texture_into(image, options, engine::RequestedPlanes::all(), result);
   CHECK(result.picture == engine::texture_picture(result.texture));
   CHECK(result.force.x == engine::tangential_force(result.texture, 3).x);
   CHECK(result.enhanced.at(4, 5) == static_cast<float>(image.at(4, 5)) + result.texture.at(4, 5));

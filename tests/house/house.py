@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
-"""house.py ROOT: holds the sources below ROOT against docs/architecture.md. Prints one line for each violation."""
+"""house.py ROOT: checks the sources below ROOT against docs/architecture.md. Prints one line per violation."""
 import collections
 import os
 import pathlib
 import re
 import sys
 
-# Headers that others compile as C: they have no namespace, and the end that C's headers have.
-FOR_C = {"device/drivers/plugin/touchtrial_device.h"}
-ENTRY = r"main\(|LLVMFuzzerTestOneInput\("  # functions that the linker looks for in no namespace
+# Headers that are also compiled as C, without a namespace.
+C_HEADERS = {"device/drivers/plugin/touchtrial_device.h"}
+ENTRY = r"main\(|LLVMFuzzerTestOneInput\("  # global functions that the linker requires
 ARGUMENTS = r"(?:<[^<>()]*(?:<[^<>()]*>[^<>()]*)*>)?"  # of a template
 OTHER_ENDINGS = {".h", ".hh", ".hxx", ".c", ".cc", ".cxx", ".inl", ".ipp", ".tpp"}
 
 
 class Room:
-    """A folder with a static library of its own."""
+    """A folder with its own static library."""
 
     def __init__(self, folder, uses):
         self.folder = folder
@@ -28,29 +28,29 @@ class Room:
 
 
 def rooms_of(architecture):
-    """The rooms of the page's table, each with the folders that it may use: those it names, and what those may use."""
+    """The rooms of the page's table, each with the folders that it may use, directly or indirectly."""
     rows = re.findall(r"^\| `([\w/]+)` \|.*\| ([^|]+) \|$", architecture, re.M)
     rooms = {folder: Room(folder, uses) for folder, uses in rows}
     for room in rooms.values():
-        room.uses, left = set(), list(room.named)
-        while left:
-            used = left.pop()
+        room.uses, pending = set(), list(room.named)
+        while pending:
+            used = pending.pop()
             if used not in rooms:
-                raise SystemExit(f"docs/architecture.md: {room.folder} may use {used}, which is no folder of the table")
+                raise SystemExit(f"docs/architecture.md: {room.folder} may use {used}, which is not in the table")
             if used not in room.uses:
                 room.uses.add(used)
-                left += rooms[used].named
+                pending += rooms[used].named
         if room.folder in room.uses:
-            raise SystemExit(f"docs/architecture.md: {room.folder} may use itself by way of others")
+            raise SystemExit(f"docs/architecture.md: {room.folder} may use itself indirectly")
     return rooms
 
 
 def plain(text):
-    """The text without comments, directives and what `#if 0` leaves out; literals become "". And its includes."""
+    """The text without comments, directives and code under `#if 0`, with "" for literals; and its includes."""
     text = text.replace("\r", "").replace("\\\n", "")
     skipped = re.compile(r'(?:u8|[uUL])?R"([^(\s]*)\(.*?\)\1"|//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"'
                          r"|(?<![0-9a-fA-F])'(?:\\.|[^'\\\n])*'", re.S)
-    includes, lines, left_out = [], [], 0
+    includes, lines, skipped_depth = [], [], 0
 
     def shortened(found):
         if found[0].startswith("//"):
@@ -62,14 +62,14 @@ def plain(text):
     for line in skipped.sub(shortened, text).split("\n"):
         directive = re.match(r"\s*#\s*(\w*)\s*(.*)", line)
         if not directive:
-            lines += [] if left_out else [line]
+            lines += [] if skipped_depth else [line]
             continue
         word, rest = directive[1], directive[2].strip()
-        if left_out:
-            left_out += word.startswith("if")
-            left_out -= word == "endif" or (left_out == 1 and word.startswith("el"))
+        if skipped_depth:
+            skipped_depth += word.startswith("if")
+            skipped_depth -= word == "endif" or (skipped_depth == 1 and word.startswith("el"))
         elif word == "if" and rest == "0":
-            left_out = 1
+            skipped_depth = 1
         elif word == "include" and rest:
             includes.append(rest.split()[0])
     return "\n".join(lines), includes
@@ -87,7 +87,7 @@ class Definition:
 
 
 class Source:
-    """What a file includes, and what it defines in its namespaces. Macros are not expanded."""
+    """A file's includes and definitions. Macros are not expanded."""
 
     def __init__(self, path, text, room):
         self.path, self.text, self.room = path, text, room
@@ -96,7 +96,7 @@ class Source:
         self.once_a_target = path.endswith("-inl.hpp")
         self.code, self.includes = plain(text)
         self.definitions, self.used_namespaces = [], []
-        self.namespaces = collections.defaultdict(bool)  # whether it holds more than forward declarations of types
+        self.namespaces = collections.defaultdict(bool)  # whether it has more than forward declarations
         self.pairs, self.is_complete = {}, True
         self.match_brackets()
         if self.is_complete:
@@ -114,8 +114,8 @@ class Source:
         self.is_complete = self.is_complete and not opened
 
     def scope(self, space, at, end):
-        """Reads the statements of a namespace, one after another."""
-        head = ""  # of the statement, without what stands in its braces
+        """Reads the statements of a namespace."""
+        head = ""  # of the statement, without the content of its braces
         while at < end:
             sign = self.code[at]
             if sign == ";":
@@ -144,7 +144,7 @@ class Source:
             at += 1
 
     def opened(self, space, words):
-        """At braces after the words of a statement. Returns the statement's words if it goes on after them."""
+        """Handles braces after the words of a statement. Returns its words if it continues after them."""
         self.holds_more(space)
         bare = declaration(words)
         if found := re.match(r"(?:typedef )?(class|struct|union|enum(?: class| struct)?)\b(.*)", bare):
@@ -247,13 +247,13 @@ def declaration(words):
 
 
 def function_of(bare):
-    """Name, parameters and what follows, if the statement declares a function."""
+    """Match of name, parameters and rest if the statement declares a function."""
     return re.match(rf"(?:.*?[\s&*])??((?:\w+{ARGUMENTS}::)*(?:operator\s*(?:\(\)|[^\s(]+|[\w: ]+)|~?\w+{ARGUMENTS}))"
                     r"\s*\((?![*&])((?:\([^()]*(?:\([^()]*\)[^()]*)*\)|[^()])*)\)(?!\s*\()(.*)$", bare)
 
 
 def types_of(parameters):
-    """The parameters' types, as written but for white space: without names and default values."""
+    """The parameters' types without white space, names and default values."""
     types, depth, one = [], 0, ""
     for sign in parameters + ",":
         depth += (sign in "<([{") - (sign in ">)]}")
@@ -277,12 +277,12 @@ class House:
                 self.read(path.relative_to(self.root).as_posix(), path)
 
     def room_of(self, path):
-        """The room with the longest folder that a path lies in."""
+        """The innermost room of a path."""
         inside = [room for folder, room in self.rooms.items() if path.startswith(folder + "/")]
         return max(inside, key=lambda room: len(room.folder), default=None)
 
     def read(self, path, file):
-        if path in FOR_C:
+        if path in C_HEADERS:
             return
         if file.suffix in OTHER_ENDINGS:
             self.not_read.append(f"{path} ends neither in .hpp nor in .cpp")
@@ -290,7 +290,7 @@ class House:
             if room := self.room_of(path):
                 self.sources[path] = Source(path, file.read_text(), room)
             else:
-                self.not_read.append(f"{path} lies in no room")
+                self.not_read.append(f"{path} is in no room")
 
     def ours(self, source):
         """The names of included files of the project."""
@@ -304,16 +304,16 @@ class House:
                 if source.room.sees_inside and name.startswith("tests/"):
                     continue
                 if not (self.root / name).exists():
-                    yield f"{what}, which is not there"
+                    yield f"{what}, which does not exist"
                 elif to is None:
                     yield f"{what}, which is in no room"
-                elif name not in self.sources and name not in FOR_C:
+                elif name not in self.sources and name not in C_HEADERS:
                     yield f"{what}, which is not read: headers end in .hpp"
                 elif to is not source.room and to.folder not in source.room.uses:
-                    yield f"{what} against the arrows"
+                    yield f"{what}, which its room may not use"
 
     def third_party_headers_shown(self):
-        """The C++ standard library's headers have neither folder nor ending; all others have."""
+        """Unlike the C++ standard library's, all third-party headers have a folder or an ending."""
         showing = set()
         while True:
             more = {source.path for source in self.sources.values() if source.is_header and (
@@ -325,7 +325,7 @@ class House:
         for source in self.sources.values():
             for name in self.ours(source):
                 if name in showing and not source.room.sees_inside and not self.in_one_layer(source.room, name):
-                    yield f"{source.path} includes {name}, which shows a third-party header"
+                    yield f"{source.path} includes {name}, which exposes a third-party header"
 
     def in_one_layer(self, part, name):
         layer = self.room_of(name)
@@ -353,7 +353,7 @@ class House:
         return reached
 
     def hidden_headers_reached(self):
-        """A header may say "Hidden from FOLDER and FILE, but for FILE": nothing there may include it, by any way."""
+        """A header may state "Hidden from FOLDER and FILE, but for FILE": these may not include it, even indirectly."""
         for header in self.sources.values():
             comment = re.match(r"(?:///.*\n)*", header.text)[0].replace("///", "") if header.is_header else ""
             found = re.search(r"Hidden\s+from\s+([^,:]+)(?:,\s+but\s+for\s+([\w/.]+))?", comment)
@@ -365,18 +365,18 @@ class House:
                     yield f"{path} reaches {header.path}, which is hidden from it"
 
     def names_defined_twice(self):
-        """Names that belong to their source alone may not meet another of their folder, whose files may be joined."""
+        """Names local to a source must be unique in its folder, whose files may be compiled together."""
         files_by_meaning = collections.defaultdict(dict)
         for source in self.sources.values():
-            alone = "<hwy/foreach_target.h>" in source.includes  # such a source includes itself
+            includes_itself = "<hwy/foreach_target.h>" in source.includes
             for definition in source.definitions:
                 is_local = definition.is_local and not source.is_header
-                if source.once_a_target or re.match(ENTRY, definition.name) or (is_local and alone):
+                if source.once_a_target or re.match(ENTRY, definition.name) or (is_local and includes_itself):
                     continue
                 name = f"{definition.kind} {definition.name}"
                 if is_local:
                     name = f"{name.replace('(anonymous)::', '')} of folder {source.folder}"
-                # Joined files may repeat an alias.
+                # Files compiled together may repeat an alias.
                 meaning = definition.aliased if is_local and definition.aliased else source.path
                 files_by_meaning[name].setdefault(meaning, source.path)
         for name, files in sorted(files_by_meaning.items()):
@@ -387,9 +387,9 @@ class House:
         for source in self.sources.values():
             own, opens_own = source.room.name_space, False
             for name, holds_more in sorted(source.namespaces.items()):
-                others = [room.name_space for room in self.rooms.values()
+                inner_rooms = [room.name_space for room in self.rooms.values()
                           if (name + "::").startswith(room.name_space + "::") and len(room.name_space) > len(own)]
-                inside = (name + "::").startswith(own + "::") and not others
+                inside = (name + "::").startswith(own + "::") and not inner_rooms
                 opens_own = opens_own or inside
                 if not inside and holds_more and not (name + "::").startswith("std::"):
                     yield f"{source.path} opens namespace {name}"
@@ -404,11 +404,11 @@ class House:
     def unguarded_or_unexplained(self):
         for source in self.sources.values():
             if not source.is_complete:
-                yield f"{source.path} cannot be read: a bracket has no partner"
+                yield f"{source.path} has an unmatched bracket"
             if source.is_header and not source.text.startswith("/// \\file "):
-                yield f"{source.path} does not begin by saying what it is for"
+                yield f"{source.path} does not begin with \\file"
             if source.is_header and not source.once_a_target and "#pragma once" not in source.text:
-                yield f"{source.path} does not guard itself"
+                yield f"{source.path} has no #pragma once"
 
     def violations(self):
         return [*self.not_read, *self.wrong_includes(), *self.third_party_headers_shown(),

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""house_test.py: houses of a few planted files, which break each rule of house.py once."""
+"""house_test.py: tests each rule of house.py with a few files that violate it."""
 import pathlib
 import tempfile
 import unittest
@@ -45,10 +45,10 @@ def pair(one, other=None):
 
 
 class HouseTest(unittest.TestCase):
-    def test_sources_beside_the_rooms_or_with_another_ending(self):
+    def test_sources_outside_rooms_or_with_another_ending(self):
         self.assertEqual(violations({"engine/old.h": "", "protocols/identification/beside.cpp": ""}),
                          ["engine/old.h ends neither in .hpp nor in .cpp",
-                          "protocols/identification/beside.cpp lies in no room"])
+                          "protocols/identification/beside.cpp is in no room"])
 
     def test_includes(self):
         engine = header("touchtrial::engine")
@@ -56,15 +56,17 @@ class HouseTest(unittest.TestCase):
             "core/a.hpp": including("touchtrial", '"engine/a.hpp"', "<engine/b.hpp> // b\r", '/* c */ "core/old.h"',
                                     '"core/gone.hpp"', '"docs/page.hpp"',
                                     '"engine/a.hpp"\n#if 0\n#include "engine/d.hpp"\n#endif\n// #include "engine/e.hpp"'),
-            "app/a.hpp": including("touchtrial::app", '"engine/a.hpp"'),  # by way of the design
+            "app/a.hpp": including("touchtrial::app", '"engine/a.hpp"'),  # indirectly allowed
             "core/old.h": "", "docs/page.hpp": "", "engine/a.hpp": engine, "engine/b.hpp": engine}),
-            ["core/a.hpp includes core/gone.hpp, which is not there",
+            ["core/a.hpp includes core/gone.hpp, which does not exist",
              "core/a.hpp includes core/old.h, which is not read: headers end in .hpp",
              "core/a.hpp includes docs/page.hpp, which is in no room",
-             "core/a.hpp includes engine/a.hpp against the arrows", "core/a.hpp includes engine/a.hpp against the arrows",
-             "core/a.hpp includes engine/b.hpp against the arrows", "core/old.h ends neither in .hpp nor in .cpp"])
+             "core/a.hpp includes engine/a.hpp, which its room may not use",
+             "core/a.hpp includes engine/a.hpp, which its room may not use",
+             "core/a.hpp includes engine/b.hpp, which its room may not use",
+             "core/old.h ends neither in .hpp nor in .cpp"])
 
-    def test_a_circle_of_rooms_and_a_room_that_is_not_there(self):
+    def test_circular_and_missing_rooms(self):
         for uses in ("engine", "store"):
             with self.assertRaises(SystemExit):
                 violations({}, ARCHITECTURE.replace("| basics | - |", f"| basics | {uses} |"))
@@ -78,7 +80,7 @@ class HouseTest(unittest.TestCase):
             "analysis/json.hpp": including("touchtrial::analysis", "<nlohmann/json.hpp>"),
             "protocols/identification/analysis/a.cpp":
                 including("touchtrial::analysis::identification", '"analysis/json.hpp"')}),
-            ["app/window.cpp includes engine/outer.hpp, which shows a third-party header"])
+            ["app/window.cpp includes engine/outer.hpp, which exposes a third-party header"])
 
     def test_private_headers(self):
         self.assertEqual(violations({
@@ -91,7 +93,7 @@ class HouseTest(unittest.TestCase):
             ["app/window.cpp includes device/hand.hpp, which is private to device",
              "engine/pack/pack.cpp includes engine/fit/spline.hpp, which is private to engine/fit"])
 
-    def test_whatever_two_headers_define(self):
+    def test_definitions_in_two_headers(self):
         for defined in (
                 "typedef int Name;", "typedef struct { int a; } Name;", "typedef void (*Name)(int);", "typedef int Name[3];",
                 "template <typename T>\nusing Name = std::vector<T>;", "union Name { int a; };", "enum class Name : int { a };",
@@ -115,7 +117,7 @@ class HouseTest(unittest.TestCase):
                 self.assertEqual(len(found), 1, (before, defined, found))
                 self.assertRegex(found[0], r"^\w+ touchtrial::analysis::Name\S*.* is defined in analysis/a.hpp analysis/b.hpp$")
 
-    def test_what_only_looks_like_a_definition(self):
+    def test_declarations_are_not_definitions(self):
         for declared in (
                 "class Name;", "template <typename T>\nstruct Name;", "enum class Name : int;", "extern int Name;",
                 "int Name(int x = 3);", "template class Name<int>;", "static_assert(sizeof(Name) > 3);", "using std::Name;",
@@ -134,7 +136,7 @@ class HouseTest(unittest.TestCase):
                                          "inline int sum(const Cue& other, int n) { return 2; }")),
                          ["function touchtrial::analysis::sum(constCue&, int) is defined in analysis/a.hpp analysis/b.hpp"])
 
-    def test_names_of_a_source_in_its_folder(self):
+    def test_local_names_in_a_folder(self):
         body = "namespace {{\nstruct Shape {{}};\nusing Json = nlohmann::json;\nusing Clock = {0};\n}}\nconstexpr int kSides = 3;"
         self.assertEqual(violations({
             "app/a.cpp": header("touchtrial::app", body.format("A") + "\nstatic int side(int x) { return x; }"),
@@ -145,7 +147,7 @@ class HouseTest(unittest.TestCase):
              for name in ("function touchtrial::app::side(int)", "type touchtrial::app::Clock", "type touchtrial::app::Shape",
                           "variable touchtrial::app::kSides")])
 
-    def test_c_functions_are_one_in_the_program(self):
+    def test_c_functions_are_unique(self):
         self.assertEqual(violations({
             "app/a.cpp": header("touchtrial::app", 'extern "C" void handle(int signal) {}'),
             "device/b.cpp": header("touchtrial::device", 'extern "C" void handle(int) {}')}),
@@ -171,9 +173,9 @@ class HouseTest(unittest.TestCase):
     def test_hidden_headers(self):
         secret = header("touchtrial::engine", "struct Secret {};",
                         "Hidden from app/windows and app/seen.hpp, but for app/windows/preview.cpp: why.")
-        by_the_way = header("touchtrial::engine", before='#include "engine/secret.hpp"')
+        indirect = header("touchtrial::engine", before='#include "engine/secret.hpp"')
         self.assertEqual(violations({
-            "engine/secret.hpp": secret, "engine/way.hpp": by_the_way,
+            "engine/secret.hpp": secret, "engine/way.hpp": indirect,
             "app/windows/screen.cpp": header("touchtrial::app", before='#include "engine/way.hpp"'),
             "app/windows/preview.cpp": header("touchtrial::app", before='#include "engine/secret.hpp"'),
             "app/seen.hpp": header("touchtrial::app"),
@@ -185,9 +187,9 @@ class HouseTest(unittest.TestCase):
             "core/bare.hpp": "namespace touchtrial {}\n",
             "core/branches.cpp": "namespace touchtrial {\n#if A\nstruct B {\n#else\nstruct C {\n#endif\n};\n}",
             "core/kernel-inl.hpp": "/// \\file Once for every target.\nnamespace touchtrial {}\n"}),
-            ["core/bare.hpp does not begin by saying what it is for", "core/bare.hpp does not guard itself",
-             "core/branches.cpp cannot be read: a bracket has no partner",
-             "core/branches.cpp does not open namespace touchtrial"])
+            ["core/bare.hpp does not begin with \\file", "core/bare.hpp has no #pragma once",
+             "core/branches.cpp does not open namespace touchtrial",
+             "core/branches.cpp has an unmatched bracket"])
 
     def test_messages_repeated_in_tests(self):
         messages = pinned_words.Messages({"core/a.cpp": 'f("the disk is full;"\n  " free some space");  // "of no use at all"\n'

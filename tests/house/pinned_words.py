@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""pinned_words.py ROOT: counts the product's messages whose wording a test repeats, and fails above a limit.
+"""pinned_words.py ROOT: counts the product's messages that a test repeats, and fails above a limit.
 
 A message is a string literal of four or more words outside tests that is not SQL. It is pinned if four consecutive
-words of it also stand in a literal of a test. Names of test cases and titles of documentation pages do not count.
+words of it are also in a literal of a test. Names of test cases and headings of documentation pages do not count.
 
-pinned_words.py ROOT --list PREFIX: prints each pinning literal of tests below PREFIX, and the message's place.
+pinned_words.py ROOT --list PREFIX: prints each such literal of tests below PREFIX, and the messages' places.
 """
 import bisect
 import collections
@@ -18,7 +18,7 @@ LIMIT = 0.04
 WORDS_IN_ROW = 4
 TESTS = "tests/"
 NOT_PRODUCT = (TESTS, "bench/", "fuzz/")
-STRINGS = r'"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*'  # adjacent ones are one
+STRINGS = r'"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*'  # including adjacent ones
 COMMENT_OR_LITERAL = re.compile(r"//[^\n]*|'(?:\\.|[^'\\\n])'|" r'(R"(\w*)\(.*?\)\2"|' + STRINGS + ")", re.S)
 PYTHON_LITERAL = re.compile(r'#[^\n"]*\n|(""".*?"""|' + STRINGS + ")", re.S)
 SQL = re.compile(r"\W*(?:SELECT|INSERT|UPDATE|DELETE|CREATE|DROP|ALTER|PRAGMA|WITH|FROM|WHERE) ")
@@ -44,7 +44,7 @@ def rows(words):
 
 
 class Messages:
-    """The product's messages, by the rows of words in them."""
+    """The product's messages, indexed by rows of four words."""
 
     def __init__(self, sources):
         self.places, self.with_row = [], collections.defaultdict(set)

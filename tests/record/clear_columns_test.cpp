@@ -32,7 +32,7 @@ void record_course(SessionRecorder& recorder, const Course& course) {
   recorder.add(later(seconds(1)), EventKind::practised,
                PracticeBody{.round = 1,
                             .presentation = 1,
-                            .answer = Chosen{course.practised_well ? 0 : 1},
+                            .answer = ChoiceAnswer{course.practised_well ? 0 : 1},
                             .correct = course.practised_well});
   recorder.add(later(seconds(1)), EventKind::noted, RemarkBody{.text = course.note});
   recorder.add(later(seconds(1)), EventKind::deviated, DeviationBody{"other", course.note});
@@ -44,11 +44,11 @@ void record_course(SessionRecorder& recorder, const Course& course) {
     TraceBody body{.trial = trial, .samples = 0, .rate_hz = 1e3, .overruns = 0, .valid = true};
     body.explorations = course.explorations;
     const TrialEvidence evidence =
-        recorder.packed(body, {.contact_s = 1.0 / static_cast<double>(course.samples)},
-                        stroking(course.samples, course.practised_well ? 0.2 : 0.0));
+        recorder.pack_evidence(body, {.contact_s = 1.0 / static_cast<double>(course.samples)},
+                               stroking(course.samples, course.practised_well ? 0.2 : 0.0));
     recorder.answered(later(seconds(2)),
                       {.trial = trial,
-                       .answer = Chosen{position, course.change_of_mind},
+                       .answer = ChoiceAnswer{position, course.change_of_mind},
                        .confidence = course.confidence},
                       evidence);
   }

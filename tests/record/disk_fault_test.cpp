@@ -21,10 +21,10 @@ struct RetriedSession {
       : story([this, &vfs, fault](StudyStore& store, Acknowledged& acknowledged) {
           vfs.plan(fault);
           record_session(store, acknowledged, [&](const std::function<void()>& step) {
-            const bool was_struck = vfs.struck();
+            const bool was_struck = vfs.has_occurred();
             const std::string line = refusal_of(step);
             if (line.empty()) {
-              unnoticed += vfs.struck() != was_struck ? 1 : 0;
+              unnoticed += vfs.has_occurred() != was_struck ? 1 : 0;
               return;
             }
             refusals.insert(line);
@@ -32,7 +32,7 @@ struct RetriedSession {
             step();
           });
           // The last event is acknowledged: from here on only durable data count.
-          struck = vfs.struck();
+          has_occurred = vfs.has_occurred();
           operations = vfs.operations();
           vfs.plan({.kind = Kind::power_cut, .at = 1});
         }),
@@ -40,7 +40,7 @@ struct RetriedSession {
 
   std::set<std::string> refusals;
   int unnoticed = 0;  ///< steps that succeeded although an operation in them failed
-  bool struck = false;
+  bool has_occurred = false;
   std::int64_t operations = 0;
   Story story;
   Outcome outcome;
@@ -58,7 +58,7 @@ std::set<std::string> fail_everywhere(const Fault& fault, int& unnoticed) {
     const RetriedSession session(vfs, study.path, now);
     REQUIRE(session.outcome.refusal.empty());
     REQUIRE(session.outcome.acknowledged.session.size() == kWholeSession);
-    vfs.start_anew();
+    vfs.restore_disk();
     {
       const StudyStore store = StudyStore::open(study.path, StudyStore::Access::read_only);
       require_kept(store, session.outcome.acknowledged);
@@ -69,7 +69,7 @@ std::set<std::string> fail_everywhere(const Fault& fault, int& unnoticed) {
       REQUIRE(contains(line, study.path.string() + ": "));
       lines.insert(line.substr(study.path.string().size() + 2));
     }
-    if (!session.struck) return lines;
+    if (!session.has_occurred) return lines;
   }
 }
 
@@ -85,8 +85,9 @@ TEST_CASE("an event that a failing disk refused is stored when the disk is well 
   const std::vector<Failure> failures = {
       {{.kind = Kind::error, .at = 1}, kBroken},
       {{.kind = Kind::short_write, .at = 1}, "", false},
-      {{.kind = Kind::full, .at = 1, .only = DiskOperation::write, .lasts = true}, ""},
-      {{.kind = Kind::error, .at = 1, .only = DiskOperation::sync, .lasts = false}, kBroken}};
+      {{.kind = Kind::full, .at = 1, .only = DiskOperation::write, .is_persistent = true}, ""},
+      {{.kind = Kind::error, .at = 1, .only = DiskOperation::sync, .is_persistent = false},
+       kBroken}};
   for (const auto& [fault, words, is_one_line] : failures) {
     int unnoticed = 0;
     const std::set<std::string> lines = fail_everywhere(fault, unnoticed);

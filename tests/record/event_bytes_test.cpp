@@ -125,24 +125,25 @@ std::string session_events() {
   recorder.add(at(), EventKind::instructed, TextBody{.text = ""});
   recorder.add(
       at(), EventKind::practised,
-      PracticeBody{.round = 2, .presentation = 3, .answer = Chosen{1, 0}, .correct = true});
+      PracticeBody{.round = 2, .presentation = 3, .answer = ChoiceAnswer{1, 0}, .correct = true});
   recorder.add(
       at(), EventKind::practised,
-      PracticeBody{.round = 1, .presentation = 1, .answer = Rated{{0.5, 7}}, .correct = {}});
+      PracticeBody{.round = 1, .presentation = 1, .answer = RatingAnswer{{0.5, 7}}, .correct = {}});
   recorder.presented(at(), 7, 2);
   recorder.first_contact(at(), 7);
   const Trace trace = stroking(5, 0.0);
   const TraceBody plain{
       .trial = 7, .samples = 0, .rate_hz = 999.9871, .overruns = 0, .valid = true, .trace = {}};
-  recorder.answered(at(), {.trial = 7, .answer = Chosen{4}, .confidence = {}});
+  recorder.answered(at(), {.trial = 7, .answer = ChoiceAnswer{4}, .confidence = {}});
   recorder.answered(at(), {.trial = 7,
-                           .answer = Chosen{4, 0},
+                           .answer = ChoiceAnswer{4, 0},
                            .confidence = 5,
                            .kind = "scored",
                            .track = 2,
                            .level = 11,
                            .target = 0});
-  recorder.answered(at(), {.trial = 8, .answer = Rated{{0.25, 1.0 / 3.0}}, .confidence = {}});
+  recorder.answered(at(),
+                    {.trial = 8, .answer = RatingAnswer{{0.25, 1.0 / 3.0}}, .confidence = {}});
   recorder.answered(at(), {.trial = 8, .answer = {}, .confidence = {}});
   recorder.interrupted(at(), 9, "comfort stop");
   recorder.interrupted(at(), 9, "device fault",
@@ -153,7 +154,7 @@ std::string session_events() {
                                           .largest_force_n = 3.25});
   recorder.timed_out(at(), 9);
   // A trace's box has random bytes, which its hash shows.
-  TrialEvidence evidence = recorder.packed(plain, {}, trace);
+  TrialEvidence evidence = recorder.pack_evidence(plain, {}, trace);
   evidence.body.trace = digest_of("box");
   recorder.timed_out(at(), 7, evidence);
   evidence.body.servo = ServoHealth{.rate_hz = 999.5,

@@ -76,26 +76,26 @@ TEST_CASE("the hash of an event changes with each of its members") {
 TEST_CASE("a chain accepts events that follow and gives the reason for refusing others") {
   ChainLink chain(2);
   Event first = an_event();
-  REQUIRE(names(chain.broken_by(first).value(), "[time-in-clear]"));
+  REQUIRE(names(chain.link_fault(first).value(), "[time-in-clear]"));
   first.at = {};
   first.hash = event_hash(first);
-  REQUIRE_FALSE(chain.broken_by(first));
+  REQUIRE_FALSE(chain.link_fault(first));
   chain.extend(first);
   REQUIRE(chain.length() == 1);
   REQUIRE(chain.head() == first.hash);
 
   Event second = first;
-  REQUIRE(names(chain.broken_by(second).value(), "[repeated-sequence]"));
+  REQUIRE(names(chain.link_fault(second).value(), "[repeated-sequence]"));
   second.sequence = 2;
-  REQUIRE(names(chain.broken_by(second).value(), "1 [sequence-gap]"));
+  REQUIRE(names(chain.link_fault(second).value(), "1 [sequence-gap]"));
   second.sequence = 1;
-  REQUIRE(names(chain.broken_by(second).value(), "[broken-link]"));
+  REQUIRE(names(chain.link_fault(second).value(), "[broken-link]"));
   second.previous = first.hash;
-  REQUIRE(names(chain.broken_by(second).value(), "[altered-event]"));
+  REQUIRE(names(chain.link_fault(second).value(), "[altered-event]"));
   second.kind = EventKind::study_closed;
   second.hash = event_hash(second);
-  REQUIRE(names(chain.broken_by(second).value(), "study-closed"));
+  REQUIRE(names(chain.link_fault(second).value(), "study-closed"));
   second.kind = EventKind::timed_out;
   second.hash = event_hash(second);
-  REQUIRE_FALSE(chain.broken_by(second));
+  REQUIRE_FALSE(chain.link_fault(second));
 }

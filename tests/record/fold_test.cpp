@@ -22,7 +22,7 @@ class FoldedSession final : public EventSink {
     rows = next;
   }
   void answer(int trial) {
-    recorder.answered(seconds(2), {.trial = trial, .answer = Chosen{1}, .confidence = {}});
+    recorder.answered(seconds(2), {.trial = trial, .answer = ChoiceAnswer{1}, .confidence = {}});
   }
   void trace(int trial) {
     recorder.trace_stored(
@@ -60,7 +60,8 @@ TEST_CASE("stored events give the rows that opened ones give, without answers an
   session.recorder.first_contact(seconds(1), 1);
   session.recorder.add(seconds(1), EventKind::explored_again, TrialBody{1});
   session.trace(1);
-  session.recorder.answered(seconds(2), {.trial = 1, .answer = Chosen{1, 2}, .confidence = 3});
+  session.recorder.answered(seconds(2),
+                            {.trial = 1, .answer = ChoiceAnswer{1, 2}, .confidence = 3});
   TrialRow expected = session.row(1);
   REQUIRE(expected.samples == 3);
   expected.presented_at = {};

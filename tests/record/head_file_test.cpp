@@ -141,7 +141,7 @@ struct OpenSession {
   void answer(int trial) {
     recorder.presented(seconds(20 * trial), trial, 0);
     recorder.answered(seconds(20 * trial + 9),
-                      {.trial = trial, .answer = Chosen{2}, .confidence = {}});
+                      {.trial = trial, .answer = ChoiceAnswer{2}, .confidence = {}});
   }
 
   std::unique_ptr<EventSink> sink;

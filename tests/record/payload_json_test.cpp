@@ -41,7 +41,7 @@ TEST_CASE("every body reads back as it was written") {
   REQUIRE(read_trace.saturated);
 
   const AnswerBody answer = from_json<AnswerBody>(
-      to_json(AnswerBody{.trial = 1, .answer = Chosen{4, 0}, .confidence = {}}));
+      to_json(AnswerBody{.trial = 1, .answer = ChoiceAnswer{4, 0}, .confidence = {}}));
   REQUIRE(first_position_of(answer.answer) == 0);
   REQUIRE_FALSE(answer.confidence);
 

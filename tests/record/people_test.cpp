@@ -178,7 +178,7 @@ TEST_CASE("a file's chain on which two sessions have one participant or number i
   REQUIRE(refuses([&] { other.add(opened("P2", 1)); }, "1"));
   // On a collected study's chain only the final state must be unique; the code that collects the
   // study ensures it.
-  FileChain collected(UniquePlaces::in_the_end);
+  FileChain collected(UniquePlaces::at_end);
   for (const Event& event : study.store->events(0)) collected.add(event);
   collected.add(opened("P1", 1));
   REQUIRE(collected.sessions().size() == 2);
@@ -297,7 +297,7 @@ TEST_CASE("of an erased person only the safety record can be opened, until it is
   {
     const auto sink = store.begin_session(
         1, wrapped_key_of(1), [] { return kUtc; },
-        keep_participant_key(station, 1, participant_key(1)));
+        seal_station_copy(station, 1, participant_key(1)));
     SessionRecorder recorder(1, participant_key(1), *sink);
     record_trials(recorder, 1, 3, stroking(20, 0.05), opening(1));
   }

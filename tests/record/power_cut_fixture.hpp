@@ -50,8 +50,9 @@ inline void record_session(record::StudyStore& store, Acknowledged& acknowledged
     attempt([&] { recorder.first_contact(start + milliseconds(350), trial); });
     const record::TraceBody body{
         .trial = trial, .samples = 0, .rate_hz = 1000.0, .overruns = 0, .valid = true, .trace = {}};
-    const record::TrialEvidence evidence = recorder.packed(body, {}, trace);
-    const record::AnswerBody answer{.trial = trial, .answer = Chosen{trial}, .confidence = {}};
+    const record::TrialEvidence evidence = recorder.pack_evidence(body, {}, trace);
+    const record::AnswerBody answer{
+        .trial = trial, .answer = ChoiceAnswer{trial}, .confidence = {}};
     attempt([&] { recorder.answered(start + seconds(9), answer, evidence); });
   }
   attempt([&] { recorder.closed(seconds(90), true); });

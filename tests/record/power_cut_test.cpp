@@ -32,8 +32,8 @@ bool survives(FaultVfs& vfs, const Story& story, const Fault& fault) {
   StoredFixture study(finished_session());
   vfs.plan(fault);
   const Outcome outcome = tell(study.path, story);
-  if (!vfs.struck()) return false;
-  vfs.start_anew();
+  if (!vfs.has_occurred()) return false;
+  vfs.restore_disk();
   {
     const StudyStore store = StudyStore::open(study.path, StudyStore::Access::read_only);
     require_kept(store, outcome.acknowledged);
@@ -50,8 +50,8 @@ void end_everywhere(const Story& story, Kind kind, std::uint64_t seeds = 1) {
   REQUIRE(operations > 5);
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     for (std::int64_t at = 1; at <= operations; ++at) {
-      REQUIRE(
-          survives(vfs, story, {.kind = kind, .at = at, .only = {}, .lasts = false, .seed = seed}));
+      REQUIRE(survives(vfs, story,
+                       {.kind = kind, .at = at, .only = {}, .is_persistent = false, .seed = seed}));
     }
   }
 }
@@ -104,8 +104,8 @@ TEST_CASE("a database that is being made is whole or not there after a kill or a
       vfs.plan(fault);
       static_cast<void>(
           refusal_of([&] { return StudyStore::create(path, commitment(), kUtc, investigator()); }));
-      if (!vfs.struck()) break;
-      vfs.start_anew();
+      if (!vfs.has_occurred()) break;
+      vfs.restore_disk();
       if (!std::filesystem::exists(path)) {
         static_cast<void>(StudyStore::create(path, commitment(), kUtc, investigator()));
       }
@@ -132,8 +132,8 @@ TEST_CASE("a destroyed key is not restored by a power cut") {
         store.withdraw(1, kUtc, "asked to");
         acknowledged = true;
       }));
-      if (!vfs.struck()) break;
-      vfs.start_anew();
+      if (!vfs.has_occurred()) break;
+      vfs.restore_disk();
       const bool withdrawn = writable(study.path).sessions().at(0).withdrawn;
       REQUIRE((withdrawn || !acknowledged));
       const Bytes file = read_file(study.path);

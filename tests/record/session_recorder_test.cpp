@@ -31,7 +31,7 @@ TEST_CASE("a recorder makes a chain that holds") {
   const BufferedEvents session = session_of(4);
   ChainLink chain(4);
   for (const Event& event : session.events) {
-    REQUIRE_FALSE(chain.broken_by(event));
+    REQUIRE_FALSE(chain.link_fault(event));
     chain.extend(event);
   }
   REQUIRE(session.events.front().kind == EventKind::opened);
@@ -82,13 +82,14 @@ TEST_CASE("an opened event has the time and the body with which it was recorded"
     REQUIRE(opened.event.sequence == stored.sequence);
   };
   const nanoseconds at(1'234'567'891);
-  recorder.add(at, EventKind::practised,
-               PracticeBody{.round = 2, .presentation = 3, .answer = Chosen{1}, .correct = true});
+  recorder.add(
+      at, EventKind::practised,
+      PracticeBody{.round = 2, .presentation = 3, .answer = ChoiceAnswer{1}, .correct = true});
   recorded(R"({"correct":true,"position":1,"presentation":3,"round":2})",
            R"({"presentation":3,"round":2})");
   recorder.presented(at, 7, 2);
   recorded(R"({"block":2,"trial":7})", R"({"block":2,"trial":7})");
-  recorder.answered(at, {.trial = 7, .answer = Chosen{4, 0}, .confidence = 5});
+  recorder.answered(at, {.trial = 7, .answer = ChoiceAnswer{4, 0}, .confidence = 5});
   recorded(R"({"confidence":5,"first_position":0,"position":4,"trial":7})", R"({"trial":7})");
   recorder.add(at, EventKind::noted, RemarkBody{.text = "sneezed"});
   recorded(R"({"text":"sneezed"})", "{}");
@@ -102,8 +103,8 @@ TEST_CASE("an opened event has the time and the body with which it was recorded"
   body.hand.path = false;
   body.saturated = true;
   body.explorations = {900, 101};
-  const TrialEvidence evidence = recorder.packed(body, {}, stroking(1001, 0.05));
-  recorder.answered(at, {.trial = 7, .answer = Chosen{4}, .confidence = {}}, evidence);
+  const TrialEvidence evidence = recorder.pack_evidence(body, {}, stroking(1001, 0.05));
+  recorder.answered(at, {.trial = 7, .answer = ChoiceAnswer{4}, .confidence = {}}, evidence);
   const Event& stored = events.events[events.events.size() - 2];
   const std::string in_clear =
       R"({"contact_ok":true,"force_ok":true,"overruns":2,"path_ok":false,"rate_hz":1000.0,)"
@@ -124,8 +125,8 @@ TEST_CASE("the size of a sealed part follows from the kind of its event") {
     return events.events.back().sealed.size();
   };
   const std::size_t least =
-      size_of({.trial = 1, .answer = Chosen{0}, .confidence = {}}, nanoseconds(0));
-  REQUIRE(size_of({.trial = 99, .answer = Chosen{63, 62}, .confidence = 100},
+      size_of({.trial = 1, .answer = ChoiceAnswer{0}, .confidence = {}}, nanoseconds(0));
+  REQUIRE(size_of({.trial = 99, .answer = ChoiceAnswer{63, 62}, .confidence = 100},
                   std::chrono::hours(9)) == least);
 }
 

@@ -129,8 +129,9 @@ inline void record_trials(record::SessionRecorder& recorder, int session, int tr
     if (trial == trials) {
       recorder.timed_out(start + seconds(10), trial);
     } else {
-      record::AnswerBody answer{.trial = trial, .answer = Chosen{trial % 5}, .confidence = {}};
-      if (trial == 2) answer.answer = Chosen{trial % 5, 4};
+      record::AnswerBody answer{
+          .trial = trial, .answer = ChoiceAnswer{trial % 5}, .confidence = {}};
+      if (trial == 2) answer.answer = ChoiceAnswer{trial % 5, 4};
       if (trial == 2) answer.confidence = 3;
       recorder.answered(start + seconds(9), answer);
     }

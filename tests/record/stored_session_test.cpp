@@ -19,7 +19,7 @@ void break_off(StudyStore& store) {
   SessionRecorder recorder(1, participant_key(1), *sink);
   recorder.opened(nanoseconds(0), opening(1), "{}");
   recorder.presented(seconds(1), 1, 0);
-  recorder.answered(seconds(2), {.trial = 1, .answer = Chosen{3}, .confidence = {}});
+  recorder.answered(seconds(2), {.trial = 1, .answer = ChoiceAnswer{3}, .confidence = {}});
   recorder.presented(seconds(3), 2, 0);
 }
 
@@ -36,11 +36,11 @@ SessionRecorder recorder_after_last(const StudyStore& store, EventSink& sink) {
 
 TrialEvidence evidence_of(const SessionRecorder& recorder, int trial) {
   TraceBody body{.trial = trial, .rate_hz = 1000.0};
-  return recorder.packed(body, {}, stroking(20, 0.05));
+  return recorder.pack_evidence(body, {}, stroking(20, 0.05));
 }
 
 AnswerBody answer_to(int trial) {
-  return {.trial = trial, .answer = Chosen{2}, .confidence = {}};
+  return {.trial = trial, .answer = ChoiceAnswer{2}, .confidence = {}};
 }
 
 }  // namespace
@@ -67,14 +67,14 @@ TEST_CASE("a session stored event by event equals one stored whole") {
 TEST_CASE("a station keeps the key of a session while it is open, and no longer") {
   StoredFixture study;
   const SecretKey station = digest_of("station");
-  const Bytes kept = keep_participant_key(station, 1, participant_key(1));
+  const Bytes kept = seal_station_copy(station, 1, participant_key(1));
   const auto sink = study.store->begin_session(1, wrapped_key_of(1), clock_at(kUtc), kept);
   SessionRecorder recorder(1, participant_key(1), *sink);
   recorder.opened(nanoseconds(0), opening(1), "{}");
   REQUIRE(study.store->kept_key(1) == kept);
-  REQUIRE(kept_participant_key(station, 1, kept) == participant_key(1));
-  REQUIRE_FALSE(kept_participant_key(station, 2, kept));
-  REQUIRE_FALSE(kept_participant_key(digest_of("another station"), 1, kept));
+  REQUIRE(open_station_copy(station, 1, kept) == participant_key(1));
+  REQUIRE_FALSE(open_station_copy(station, 2, kept));
+  REQUIRE_FALSE(open_station_copy(digest_of("another station"), 1, kept));
   REQUIRE_FALSE(study.store->first_fault());
   recorder.closed(seconds(1), false);
   REQUIRE_FALSE(study.store->kept_key(1));
@@ -95,7 +95,7 @@ TEST_CASE("every accepted event is in the file at once, for other programs too")
   recorder.presented(seconds(1), 1, 0);
   REQUIRE(reader.events(1).size() == 2);
   REQUIRE(reader.trials().at(0).state == TrialState::presented);
-  recorder.answered(seconds(2), {.trial = 1, .answer = Chosen{3}, .confidence = {}});
+  recorder.answered(seconds(2), {.trial = 1, .answer = ChoiceAnswer{3}, .confidence = {}});
   REQUIRE(reader.trials().at(0).state == TrialState::answered);
   REQUIRE(position_of(opened_trials(reader, 1).at(0).answer) == 3);
   REQUIRE_FALSE(reader.first_fault());
@@ -108,7 +108,7 @@ TEST_CASE("a refused event leaves no trace, and the session continues") {
   REQUIRE(refuses([&] { recorder.presented(seconds(1), 1, 0); }));
   REQUIRE(study.store->events(0).size() == 1);
   recorder.opened(nanoseconds(0), opening(1), "{}");
-  const AnswerBody answer{.trial = 1, .answer = Chosen{3}, .confidence = {}};
+  const AnswerBody answer{.trial = 1, .answer = ChoiceAnswer{3}, .confidence = {}};
   REQUIRE(refuses([&] { recorder.answered(seconds(2), answer); }));
   REQUIRE(study.store->events(1).size() == 1);
   recorder.presented(seconds(1), 1, 0);

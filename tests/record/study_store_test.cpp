@@ -109,7 +109,7 @@ TEST_CASE("sessions and trials are derived from the events") {
   opened.presented_at = seconds(40);
   opened.contact_at = seconds(40) + milliseconds(350);
   opened.answered_at = seconds(49);
-  opened.answer = Chosen{2, 4};
+  opened.answer = ChoiceAnswer{2, 4};
   opened.confidence = 3;
   opened.samples = 20;
   REQUIRE(opened_trials(*study.store, 1)[1] == opened);

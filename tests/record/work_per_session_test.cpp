@@ -37,7 +37,7 @@ int pages_of_adding(StoredStudy& study, int session) {
   const BufferedEvents events = session_of(session);
   const NewKeys keys = wrapped_key_of(session);
   const int before = pages_looked_at(study.database());
-  study.change([&] { study.store_whole(events, keys, kUtc); });
+  study.change([&] { study.store_complete(events, keys, kUtc); });
   return pages_looked_at(study.database()) - before;
 }
 

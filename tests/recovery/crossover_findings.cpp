@@ -44,17 +44,17 @@ std::vector<analysis::CrossoverPerson> crossed(const CrossedPeople& people, Rand
     return static_cast<double>(right) / kTrials;
   };
   std::vector<analysis::CrossoverPerson> all;
-  bool first_came_first = false;
+  bool first_method_first = false;
   for (int i = 0; i < people.participants; ++i) {
-    first_came_first = i % 2 == 0 ? random.uniform() < 0.5 : !first_came_first;
+    first_method_first = i % 2 == 0 ? random.uniform() < 0.5 : !first_method_first;
     const double middle = 0.6 + 0.1 * random.normal();
     const double effect = people.effect + people.spread * random.normal();
     const double learnt = people.period + 0.05 * random.normal();
-    const double later = first_came_first ? -0.5 * learnt : 0.5 * learnt;
+    const double later = first_method_first ? -0.5 * learnt : 0.5 * learnt;
     const double first = share_of(middle + 0.5 * effect + later);
     const double second = share_of(middle - 0.5 * effect - later);
     if (random.uniform() < people.lost) continue;
-    all.push_back({first - second, first_came_first, i / 2});
+    all.push_back({first - second, first_method_first, i / 2});
   }
   return all;
 }

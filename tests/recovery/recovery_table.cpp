@@ -14,22 +14,25 @@ using touchtrial::recovery::Finding;
 
 constexpr const char* kIntroduction = R"(# Parameter recovery of statistics
 
-This page shows what the analysis finds for simulated participants whose parameters are all known. They
-answer by signal detection with a known sensitivity d', spread between people, lapses, biases and
-swapped labels (or by a similarity choice model), with five classes and, unless stated otherwise, 25
-trials each. Every line comes from {} simulated studies or a quarter of that (the exact ones add up all
-outcomes).
+This page compares the analysis of simulated participants with their known parameters. They answer by signal
+detection with a known sensitivity d', spread between people, lapses, biases and swapped labels (or by a
+similarity choice model), with five classes and, unless stated otherwise, 25 trials each. Every line comes
+from {} simulated studies or a quarter of that; exact lines sum over all outcomes.
 
 `scripts/recovery {}` prints this page; the test program `test_recovery` checks every line with fewer
-studies. A number is as expected if it lies within four Monte-Carlo errors of nominal, or of the range
+studies. A number is as expected if it is within four Monte-Carlo errors of nominal, or of the range
 that its remark explains. [statistics.md](statistics.md) defines the statistics.
 
-Conclusions: the t test of the mean against chance keeps its level unless a few people are worse than
-chance; looking at outcomes unadjusted does not; the comparison of two methods, one after the other, keeps level and
-power whatever the periods do, where sign flips lose half of it; intervals over participants hold their level from 8
-participants on; intervals and tests that treat pooled trials as independent do not, once people differ;
-chi-square rejects the choice model too often when it is true; information transfer estimated from 25 trials
-cannot be trusted, corrected or not.
+Conclusions:
+
+- The t test of the mean against chance keeps its level unless a few people are worse than chance.
+  Unadjusted looks at outcomes do not.
+- The comparison of two methods in separate blocks keeps level and power with any effect of the period;
+  sign flips lose half of the power.
+- Intervals over participants keep their level from 8 participants on. If people differ, intervals and
+  tests that treat pooled trials as independent do not.
+- Chi-square rejects a true choice model too often.
+- Information transfer from 25 trials is unreliable, corrected or not.
 )";
 
 std::string line_of(const Finding& finding) {

@@ -15,20 +15,20 @@ using record::ListedMember;
 class Table {
  public:
   void add_kind(const record::EventKindRow& row) {
-    const std::string key = row.more.in_safety_record ? " (safety key)" : "";
+    const std::string key = row.details.in_safety_record ? " (safety key)" : "";
     add("`" + std::string(row.name) + "`" + key, "", "", "", row.meaning);
     for (const ListedMember& one : record::members_of(row.body)) {
-      const bool is_text = one.member.key == "text" && !row.more.text.empty();
+      const bool is_text = one.member.key == "text" && !row.details.text.empty();
       add_member("", one, one.member.note.sealed ? "sealed" : "",
-                 is_text ? row.more.text : one.member.meaning);
+                 is_text ? row.details.text : one.member.meaning);
     }
-    if (row.more.secret != nullptr) {
-      for (const ListedMember& one : record::members_of(row.more.secret)) {
+    if (row.details.secret != nullptr) {
+      for (const ListedMember& one : record::members_of(row.details.secret)) {
         add_member("", one, "secret", one.member.meaning);
       }
     }
-    if (!row.more.secret_description.empty())
-      add("", "", "", "secret", row.more.secret_description);
+    if (!row.details.secret_description.empty())
+      add("", "", "", "secret", row.details.secret_description);
   }
 
   [[nodiscard]] const std::string& text() const { return text_; }

@@ -5,6 +5,7 @@
 ///     settings_files write ROOT   writes them
 ///     settings_files judge KIND   reads a settings file from each line, writes the reader's
 ///     refusal
+#include "column_tables.hpp"
 #include "core/describe.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
@@ -67,7 +68,9 @@ const Kind& kind_of(std::string_view name) {
 std::string table_of(std::string what) {
   constexpr std::string_view kInner = " with inner keys";
   constexpr std::string_view kMeasures = "measures of ";
+  constexpr std::string_view kColumns = "columns of ";
   if (what.starts_with(kMeasures)) return table_of_measures(what.substr(kMeasures.size()));
+  if (what.starts_with(kColumns)) return table_of_columns(what.substr(kColumns.size()));
   if (what == "events in exports") return table_of_exported_events();
   if (what.starts_with("events ")) return table_of_events(what.ends_with("file"));
   const bool nested = what.ends_with(kInner);
@@ -80,8 +83,8 @@ std::string table_of(std::string what) {
 /// The page with its tables made anew. A table stands between the lines
 /// `<!-- settings: KIND /pointer -->`, `<!-- settings: KIND /pointer with inner keys -->` or
 /// `<!-- settings: events of the file -->` (`of a session`, `in exports`) or
-/// `<!-- settings: measures of identification -->` (`of ratings`, `of thresholds`) and
-/// `<!-- end of settings -->`.
+/// `<!-- settings: measures of identification -->` (`of ratings`, `of thresholds`) or
+/// `<!-- settings: columns of FILE.csv -->` and `<!-- end of settings -->`.
 std::string with_tables(const std::string& page) {
   constexpr std::string_view kBegins = "<!-- settings: ";
   constexpr std::string_view kEnds = "<!-- end of settings -->\n";
@@ -100,7 +103,7 @@ std::string with_tables(const std::string& page) {
 
 /// \return whether the file was as it should be
 bool settle(const fs::path& file, const std::string& wanted, bool writes) {
-  if (is_there(file) && text_of(read_file(file)) == wanted) return true;
+  if (path_exists(file) && text_of(read_file(file)) == wanted) return true;
   if (writes) replace_file(file, wanted);
   std::cout << file.string()
             << (writes ? " is written\n" : " is not as the descriptions have it\n");

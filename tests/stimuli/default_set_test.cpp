@@ -91,7 +91,7 @@ TEST_CASE(
   generate_default_stimuli(folder.path(), {5, kTiny, 2});
   replace_file(folder.path() / "exemplars" / "bark-2.png", "own");
   generate_default_stimuli(folder.path(), {5, kTiny, 1});
-  CHECK_FALSE(is_there(folder.path() / "exemplars" / "cloth-2.png"));
+  CHECK_FALSE(path_exists(folder.path() / "exemplars" / "cloth-2.png"));
   CHECK(text_of(read_file(folder.path() / "exemplars" / "bark-2.png")) == "own");
 }
 
@@ -101,7 +101,7 @@ TEST_CASE("somebody's own picture is not replaced, and nothing is made beside it
   CHECK_THROWS_WITH(generate_default_stimuli(folder.path(), {5, kTiny, 1}),
                     holds_text("straw.png") && holds_text("--force"));
   CHECK(text_of(read_file(folder.path() / "straw.png")) == "own");
-  CHECK_FALSE(is_there(folder.path() / "bark.png"));
+  CHECK_FALSE(path_exists(folder.path() / "bark.png"));
 }
 
 TEST_CASE("progress is reported after each picture") {
@@ -128,7 +128,7 @@ TEST_CASE("a set without exemplars or with too many is refused before any pictur
   const auto set = folder.path() / "set";
   CHECK_THROWS_AS(generate_default_stimuli(set, {5, kTiny, 0}), UsageError);
   CHECK_THROWS_AS(generate_default_stimuli(set, {5, kTiny, kMaxStimulusExemplars + 1}), UsageError);
-  CHECK_FALSE(is_there(set));
+  CHECK_FALSE(path_exists(set));
 }
 
 TEST_CASE("the manifest names the licence and the generator in plain JSON") {

@@ -12,7 +12,7 @@ TEST_CASE("the first exemplar is as the recipe says, with the seed's own noise")
   CHECK(first.factor("depth", 0.5) == 1.0);
   CHECK(first.turn("way", 0.5) == Vec2{1.0, 0.0});
   const View view = view_of(first);
-  CHECK(view.on_surface(31.5, 8.25) == Vec2{31.5, 8.25});
+  CHECK(view.surface_position(31.5, 8.25) == Vec2{31.5, 8.25});
 }
 
 TEST_CASE("further exemplars have other noise and depart within the spread, both ways") {
@@ -34,8 +34,8 @@ TEST_CASE("further exemplars have other noise and depart within the spread, both
 }
 
 TEST_CASE("a view turns, scales and leaves its middle in place") {
-  View view{.scale = 2.0, .along = {0.0, 1.0}, .middle = {10.0, 20.0}};
-  CHECK(view.on_surface(10.0, 20.0) == Vec2{10.0, 20.0});
-  CHECK(view.on_surface(14.0, 20.0) == Vec2{10.0, 22.0});
-  CHECK(view.on_surface(10.0, 24.0) == Vec2{8.0, 20.0});
+  View view{.scale = 2.0, .x_direction = {0.0, 1.0}, .middle = {10.0, 20.0}};
+  CHECK(view.surface_position(10.0, 20.0) == Vec2{10.0, 20.0});
+  CHECK(view.surface_position(14.0, 20.0) == Vec2{10.0, 22.0});
+  CHECK(view.surface_position(10.0, 24.0) == Vec2{8.0, 20.0});
 }

@@ -26,7 +26,7 @@ study::Schedule two_blocks() {
 class GrowingBlocks final : public study::Order {
  public:
   GrowingBlocks() : Order(two_blocks(), SecretKey{}) {}
-  std::vector<Trial> restarted(int block, int restarts_before, int first_trial) const override {
+  std::vector<Trial> redraw_block(int block, int restarts_before, int first_trial) const override {
     std::vector<Trial> again;
     for (int i = 0; i < 2 + restarts_before; ++i) {
       again.push_back(
@@ -70,7 +70,7 @@ std::vector<int> rest_of(study::Course& course) {
 
 TEST_CASE("a course presents its schedule in order, and is over after it") {
   study::Course course = course_of_blocks(OnInterruption::repeat);
-  CHECK(course.left() == 4);
+  CHECK(course.remaining() == 4);
   CHECK(rest_of(course) == std::vector<int>{1, 2, 3, 4});
   CHECK(course.is_over());
   CHECK(course.current() == nullptr);
@@ -117,8 +117,8 @@ TEST_CASE("an interrupted block is restarted under new numbers before all else")
   CHECK(course.is_void(2));
   CHECK_FALSE(course.is_void(3));
   CHECK_FALSE(course.is_void(5));
-  CHECK(course.has(6));
-  CHECK_FALSE(course.has(7));
+  CHECK(course.has_trial(6));
+  CHECK_FALSE(course.has_trial(7));
   course.interrupt();
   course.restart(course.redrawn_block(0));
   CHECK(rest_of(course) == std::vector<int>{7, 8, 9, 3, 4});

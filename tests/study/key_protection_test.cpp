@@ -25,15 +25,15 @@ const std::string kPassphrase = "a long passphrase";
 class Answers {
  public:
   explicit Answers(std::vector<std::string> passphrases) {
-    study::ask_passphrases_with([this, passphrases = std::move(passphrases)](
-                                    const auto&, int attempt) -> std::optional<std::string> {
+    study::set_passphrase_prompt([this, passphrases = std::move(passphrases)](
+                                     const auto&, int attempt) -> std::optional<std::string> {
       ++asked;
       const auto index = static_cast<std::size_t>(attempt - 1);
       if (index >= passphrases.size()) return std::nullopt;
       return passphrases[index];
     });
   }
-  ~Answers() { study::ask_passphrases_with({}); }
+  ~Answers() { study::set_passphrase_prompt({}); }
   Answers(const Answers&) = delete;
   Answers& operator=(const Answers&) = delete;
 

@@ -12,7 +12,7 @@
 namespace touchtrial {
 namespace {
 
-bool keeps(const std::vector<int>& order, int max_run, study::RunBefore before) {
+bool keeps(const std::vector<int>& order, int max_run, study::PrecedingRun before) {
   return std::ranges::all_of(order, [&](int symbol) {
     before = study::run_at_end({symbol}, before);
     return before.length <= max_run;
@@ -21,7 +21,7 @@ bool keeps(const std::vector<int>& order, int max_run, study::RunBefore before) 
 
 /// Every order of the copies, by trying all.
 std::set<std::vector<int>> allowed(const std::vector<int>& counts, int max_run,
-                                   study::RunBefore before) {
+                                   study::PrecedingRun before) {
   std::vector<int> order;
   for (int s = 0; s < static_cast<int>(counts.size()); ++s) {
     order.insert(order.end(), static_cast<std::size_t>(counts[static_cast<std::size_t>(s)]), s);
@@ -35,7 +35,7 @@ std::set<std::vector<int>> allowed(const std::vector<int>& counts, int max_run,
 
 /// Every sequence of that length, by trying all.
 std::set<std::vector<int>> allowed_sequences(int symbols, int length, int max_run,
-                                             study::RunBefore before) {
+                                             study::PrecedingRun before) {
   std::set<std::vector<int>> found = {{}};
   for (int i = 0; i < length; ++i) {
     std::set<std::vector<int>> longer;
@@ -56,7 +56,7 @@ std::set<std::vector<int>> allowed_sequences(int symbols, int length, int max_ru
 struct Case {
   std::vector<int> counts;
   int max_run;
-  study::RunBefore before;
+  study::PrecedingRun before;
 };
 
 std::vector<Case> small_cases() {
@@ -138,7 +138,7 @@ TEST_CASE("sequences with limited runs are drawn uniformly from all") {
 TEST_CASE("Williams orders with and without a limit are drawn uniformly from all that there are") {
   struct WilliamsCase {
     int symbols, rows, max_run;
-    study::RunBefore before;
+    study::PrecedingRun before;
   };
   for (const auto& [symbols, rows, max_run, before] : std::vector<WilliamsCase>{
            {3, 2, 0, {}}, {3, 3, 1, {}}, {4, 2, 1, {}}, {3, 4, 1, {2, 1}}, {2, 3, 2, {0, 2}}}) {

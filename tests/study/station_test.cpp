@@ -35,20 +35,20 @@ std::vector<Station> stations_with(int participants, int count) {
   std::vector<std::string> names;
   for (int i = 1; i <= count; ++i) names.push_back("s" + std::to_string(i));
   std::vector<Station> stations = study::stations_named(names);
-  study::hand_out_enrolments(stations, participants);
+  study::assign_enrolments(stations, participants);
   return stations;
 }
 
 StudyKey divided_key(const Study& study, int participants, int count, std::uint64_t seed = 1) {
   SeededEntropy entropy(seed);
   StudyKey key = study::make_study_key(study, entropy, false);
-  study::divide(key, stations_with(participants, count));
+  study::assign_stations(key, stations_with(participants, count));
   return key;
 }
 
 /// Which station has each number, from 1; every number has one.
 std::vector<std::string> owners(const std::vector<Station>& stations) {
-  std::vector<std::string> owner(static_cast<std::size_t>(enrolments_of(stations)));
+  std::vector<std::string> owner(static_cast<std::size_t>(enrolment_count(stations)));
   for (const Station& station : stations) {
     for (const EnrolmentRange& range : station.ranges) {
       for (int number = range.first; number <= range.last; ++number) {
@@ -85,12 +85,12 @@ TEST_CASE("every number belongs to one station, and each gets as many as can be"
 TEST_CASE("numbers that are handed out later leave every other where it was") {
   std::vector<Station> stations = stations_with(10, 4);
   const std::vector<std::string> before = owners(stations);
-  study::hand_out_enrolments(stations, 31);
+  study::assign_enrolments(stations, 31);
   const std::vector<std::string> after = owners(stations);
   REQUIRE(after.size() == 31);
   CHECK(std::equal(before.begin(), before.end(), after.begin()));
   check_even(stations);
-  CHECK_THROWS_AS(study::hand_out_enrolments(stations, 30), std::invalid_argument);
+  CHECK_THROWS_AS(study::assign_enrolments(stations, 30), std::invalid_argument);
   CHECK(study::station_of(stations, 1)->name == "s1");
   CHECK(study::station_of(stations, 32) == nullptr);
 }

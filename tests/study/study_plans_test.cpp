@@ -77,6 +77,7 @@ TEST_CASE("what nobody can practise, read or be asked is refused at its place") 
       {"/practice/classes/0/images", {"velvet.png"}, "/practice/classes/1/images/0 velvet.png"},
       {"/practice", {}, "/trials/practice 5"},
       {"/practice/criterion", 6, "/practice/criterion 6 5"},
+      {"/practice/rounds", 11, "/practice/rounds 11 10"},
       {"/session/handednes", true, "/session/handednes handedness"},
       {"/session/sight", "curtains", "curtain"},
       {"/registration/hypotesis", "", "hypothesis"},

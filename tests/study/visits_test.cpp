@@ -139,7 +139,7 @@ TEST_CASE("methods that are divided between visits are those of one long session
     for (std::size_t i = 0; i < whole.size(); ++i) CHECK(visits[i].planes == whole[i].planes);
     ++first_method[whole.front().field().method];
     const study::ScheduleDraw second = key.draw_of(number, Draws::people, 2);
-    const auto again = study::make_order(key.study, second)->restarted(1, 0, 100);
+    const auto again = study::make_order(key.study, second)->redraw_block(1, 0, 100);
     CHECK(again.size() == visits.size() / 2);
   }
   CHECK(first_method == std::map<int, int>{{0, 4}, {1, 4}});
@@ -181,8 +181,8 @@ TEST_CASE("orders of methods are balanced in each group of each station") {
   study::StudyKey key = study::make_study_key(parsed(document), entropy, false);
   std::vector<study::Station> stations =
       study::stations_named(std::vector<std::string>{"north", "south"});
-  study::hand_out_enrolments(stations, 48);
-  study::divide(key, std::move(stations));
+  study::assign_enrolments(stations, 48);
+  study::assign_stations(key, std::move(stations));
   const int rows = study::method_orders(key.study);
   REQUIRE(rows == 2);
   std::map<std::pair<int, int>, std::map<int, int>> orders;  // by station and group

@@ -1,4 +1,4 @@
-/// \file Events as they were recorded, with their times and whole bodies.
+/// \file Stored events with their times and bodies decrypted.
 #pragma once
 
 #include "core/errors.hpp"
@@ -9,10 +9,11 @@
 
 namespace touchtrial {
 
-/// \param event  of a session, as it is stored
+/// \param event  a session's event as stored
+/// \throws VerificationError if the key does not open it
 inline record::Event as_recorded(const record::Event& event, const SecretKey& participant_key) {
   std::optional<record::OpenedEvent> opened = record::opened_event(event, participant_key);
-  if (!opened) throw VerificationError("an event does not open");
+  if (!opened) throw VerificationError("the event cannot be decrypted");
   return opened->event;
 }
 

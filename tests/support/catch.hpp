@@ -1,4 +1,4 @@
-/// \file One name for Catch2 version 2 (Debian 12) and 3 (elsewhere).
+/// \file Includes Catch2, version 2 (Debian 12) or 3.
 #pragma once
 
 #if __has_include(<catch2/catch_all.hpp>)
@@ -12,7 +12,7 @@ using Catch::Approx;
 
 namespace touchtrial {
 
-/// A matcher for texts that hold `part`.
+/// A matcher for texts that contain `part`.
 inline auto holds_text(const std::string& part) {
 #if __has_include(<catch2/catch_all.hpp>)
   return Catch::Matchers::ContainsSubstring(part);

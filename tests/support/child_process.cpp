@@ -12,13 +12,14 @@
 namespace touchtrial::testing {
 namespace {
 
-/// Long enough that only a program that hangs is given up.
-constexpr std::chrono::seconds kPatience{300};
+/// Only a hanging program takes this long.
+constexpr std::chrono::seconds kTimeout{300};
 constexpr std::chrono::seconds kPollInterval{1};
 
-/// In the child. Never returns.
-[[noreturn]] void become(std::vector<char*>& arguments, const std::vector<std::string>& environment,
-                         const std::string& folder, int input, int output) {
+/// Runs in the child.
+[[noreturn]] void exec_child(std::vector<char*>& arguments,
+                             const std::vector<std::string>& environment, const std::string& folder,
+                             int input, int output) {
   if (!folder.empty() && chdir(folder.c_str()) != 0) _exit(127);
   dup2(input, STDIN_FILENO);
   dup2(output, STDOUT_FILENO);
@@ -38,12 +39,12 @@ ChildProcess::ChildProcess(const std::vector<std::string>& arguments,
   std::array<int, 2> to_child{};
   std::array<int, 2> from_child{};
   if (pipe2(to_child.data(), O_CLOEXEC) != 0 || pipe2(from_child.data(), O_CLOEXEC) != 0) return;
-  std::vector<std::string> kept = arguments;
+  std::vector<std::string> argument_copy = arguments;
   std::vector<char*> pointers;
-  for (std::string& argument : kept) pointers.push_back(argument.data());
+  for (std::string& argument : argument_copy) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
   process_ = fork();
-  if (process_ == 0) become(pointers, environment, folder, to_child[0], from_child[1]);
+  if (process_ == 0) exec_child(pointers, environment, folder, to_child[0], from_child[1]);
   ::close(to_child[0]);
   ::close(from_child[1]);
   input_ = to_child[1];
@@ -73,16 +74,17 @@ void ChildProcess::write(const std::string& text) {
 
 bool ChildProcess::listen(std::chrono::milliseconds longest) {
   pollfd waiting{output_pipe_, POLLIN, 0};
-  if (ended_ || poll(&waiting, 1, static_cast<int>(longest.count())) <= 0) return !ended_;
+  if (output_ended_ || poll(&waiting, 1, static_cast<int>(longest.count())) <= 0)
+    return !output_ended_;
   std::array<char, 4096> bytes{};
   const ssize_t count = ::read(output_pipe_, bytes.data(), bytes.size());
-  ended_ = count <= 0;
-  if (!ended_) output_.append(bytes.data(), static_cast<std::size_t>(count));
-  return !ended_;
+  output_ended_ = count <= 0;
+  if (!output_ended_) output_.append(bytes.data(), static_cast<std::size_t>(count));
+  return !output_ended_;
 }
 
 bool ChildProcess::says(const std::string& text) {
-  const auto until = std::chrono::steady_clock::now() + kPatience;
+  const auto until = std::chrono::steady_clock::now() + kTimeout;
   while (output_.find(text) == std::string::npos) {
     if (!listen(kPollInterval) || std::chrono::steady_clock::now() > until) return false;
   }
@@ -90,7 +92,7 @@ bool ChildProcess::says(const std::string& text) {
 }
 
 int ChildProcess::finish() {
-  const auto until = std::chrono::steady_clock::now() + kPatience;
+  const auto until = std::chrono::steady_clock::now() + kTimeout;
   while (listen(kPollInterval)) {
     if (std::chrono::steady_clock::now() > until) return -1;
   }

@@ -1,4 +1,4 @@
-/// \file A program that runs beside the test, which talks to it through pipes.
+/// \file A child process that a test drives through pipes.
 #pragma once
 
 #include <chrono>
@@ -13,22 +13,22 @@ class ChildProcess {
  public:
   /// Starts the process.
   /// \param arguments  the program's path first
-  /// \param environment  "NAME=VALUE", in addition to this process's
+  /// \param environment  "NAME=VALUE", added to this process's environment
   /// \param folder  its working directory; empty: that of this process
   ChildProcess(const std::vector<std::string>& arguments,
                const std::vector<std::string>& environment, const std::string& folder = "");
-  ~ChildProcess();  ///< ends it if it still runs
+  ~ChildProcess();  ///< kills it if it still runs
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   void write(const std::string& text);
-  /// Ends the program's input.
+  /// Closes the program's standard input.
   void close_input();
   void send_signal(int signal);
-  /// Waits for output, at most this long, and reads it.
+  /// Reads output, waiting at most `longest` for it.
   /// \return false at the end of the output
   [[nodiscard]] bool listen(std::chrono::milliseconds longest);
-  /// Reads until the output, both streams together, contains this text.
+  /// Waits until the output of both streams contains the text.
   /// \return false if the output ended first, or the process hangs
   [[nodiscard]] bool says(const std::string& text);
   /// Reads the rest of the output.
@@ -41,7 +41,7 @@ class ChildProcess {
   int input_ = -1;
   int output_pipe_ = -1;
   std::string output_;
-  bool ended_ = false;  ///< the output
+  bool output_ended_ = false;
 };
 
 }  // namespace touchtrial::testing

@@ -1,4 +1,4 @@
-/// \file A variable of the environment for the time of a test.
+/// \file Sets an environment variable during a test.
 #pragma once
 
 #include <cstdlib>
@@ -9,10 +9,10 @@
 
 namespace touchtrial {
 
-/// Sets a variable, or removes it, while this lives.
+/// Sets or removes a variable, and restores it on destruction.
 class EnvironmentVariable {
  public:
-  /// \param value  nullptr: none
+  /// \param value  nullptr: removes the variable
   EnvironmentVariable(const char* name, const char* value) : name_(name) {
     if (const char* before = std::getenv(name)) before_ = before;
     value == nullptr ? ::unsetenv(name) : ::setenv(name, value, 1);

@@ -13,7 +13,7 @@ void put(Bytes& content, std::size_t offset, ByteView bytes) {
   std::copy(bytes.begin(), bytes.end(), content.begin() + static_cast<std::ptrdiff_t>(offset));
 }
 
-bool by_chance(RandomStream& random) {
+bool flip_coin(RandomStream& random) {
   return random.below(2) == 1;
 }
 
@@ -21,14 +21,14 @@ bool by_chance(RandomStream& random) {
 
 void FaultDisk::adopt(const std::string& path, Bytes content) {
   files_[path] = {
-      .is_seen = true, .is_safe = true, .seen = content, .safe = content, .pending = {}};
+      .is_seen = true, .is_durable = true, .seen = content, .durable = content, .pending = {}};
 }
 
 void FaultDisk::create(const std::string& path) {
   File& file = files_[path];
   file.is_seen = true;
   file.seen.clear();
-  // A removal that is not certain yet may leave the old content.
+  // If the removal was not synced, the old content may remain.
   file.pending = {{.offset = 0, .bytes = {}, .truncates = true}};
 }
 
@@ -48,15 +48,15 @@ void FaultDisk::truncate(const std::string& path, std::size_t size) {
 
 void FaultDisk::sync(const std::string& path) {
   File& file = files_[path];
-  for (const Change& change : file.pending) apply(change, file.safe);
+  for (const Change& change : file.pending) apply(change, file.durable);
   file.pending.clear();
-  file.is_safe = true;
+  file.is_durable = true;
   for (auto& [other, removed] : files_) {
-    if (!removed.is_seen) removed.is_safe = false;
+    if (!removed.is_seen) removed.is_durable = false;
   }
 }
 
-void FaultDisk::lose(const std::string& path) {
+void FaultDisk::drop_unsynced(const std::string& path) {
   files_[path].pending.clear();
 }
 
@@ -64,7 +64,7 @@ void FaultDisk::remove(const std::string& path, bool durably) {
   File& file = files_[path];
   file.is_seen = false;
   file.pending.clear();
-  if (durably) file.is_safe = false;
+  if (durably) file.is_durable = false;
 }
 
 void FaultDisk::apply(const Change& change, Bytes& content) {
@@ -77,14 +77,14 @@ void FaultDisk::apply(const Change& change, Bytes& content) {
 
 void FaultDisk::apply_in_part(const Change& change, Bytes& content, RandomStream& random) {
   if (change.truncates) {
-    if (by_chance(random)) apply(change, content);
+    if (flip_coin(random)) apply(change, content);
     return;
   }
   std::size_t done = 0;
   while (done < change.bytes.size()) {
     const std::size_t at = change.offset + done;
     const std::size_t part = std::min(kSectorBytes - at % kSectorBytes, change.bytes.size() - done);
-    if (by_chance(random)) put(content, at, ByteView(change.bytes).subspan(done, part));
+    if (flip_coin(random)) put(content, at, ByteView(change.bytes).subspan(done, part));
     done += part;
   }
 }
@@ -100,13 +100,13 @@ DiskImage FaultDisk::as_seen() const {
 DiskImage FaultDisk::after_power_cut(RandomStream* random) const {
   DiskImage image;
   for (const auto& [path, file] : files_) {
-    bool is_there = file.is_safe;
-    if (random != nullptr && file.is_seen != file.is_safe) is_there = by_chance(*random);
-    Bytes content = file.safe;
+    bool remains = file.is_durable;
+    if (random != nullptr && file.is_seen != file.is_durable) remains = flip_coin(*random);
+    Bytes content = file.durable;
     if (random != nullptr) {
       for (const Change& change : file.pending) apply_in_part(change, content, *random);
     }
-    image[path] = is_there ? std::optional(std::move(content)) : std::nullopt;
+    image[path] = remains ? std::optional(std::move(content)) : std::nullopt;
   }
   return image;
 }

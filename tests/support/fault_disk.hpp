@@ -1,5 +1,4 @@
-/// \file A model of a disk whose power can be cut: which content of its files, synced or not,
-///   remains.
+/// \file Models which file content a disk keeps after a power cut.
 #pragma once
 
 #include "core/bytes.hpp"
@@ -13,33 +12,32 @@
 
 namespace touchtrial::testing {
 
-/// Files by their paths; nothing where there is none.
+/// File content by path; nullopt: the file does not exist.
 using DiskImage = std::map<std::string, std::optional<Bytes>>;
 
-/// Keeps every file twice: as programs see it, and as the platter has it. A sector (512 bytes) is
-/// written as a whole or not at all, and does not affect its neighbours.
+/// Stores each file twice: as programs see it, and as it is on the disk. A sector (512 bytes) is
+/// written completely or not at all, and does not affect its neighbours.
 class FaultDisk {
  public:
-  [[nodiscard]] bool knows(const std::string& path) const { return files_.count(path) > 0; }
+  [[nodiscard]] bool contains(const std::string& path) const { return files_.count(path) > 0; }
   /// Adds a file whose content is already durable.
   void adopt(const std::string& path, Bytes content);
-  /// Creates an empty file; it surely exists only after a sync.
+  /// Creates an empty file, which is durable only after a sync.
   void create(const std::string& path);
   void write(const std::string& path, std::size_t offset, ByteView bytes);
   void truncate(const std::string& path, std::size_t size);
-  /// Makes everything that was written to the file durable, and its folder's entries as well.
+  /// Makes the file's content and its folder's entries durable.
   void sync(const std::string& path);
-  /// A sync that failed: as on Linux, the data that it should have written are lost, although
-  /// programs still see them.
-  void lose(const std::string& path);
-  /// \param durably  whether its absence is certain
+  /// Models a failed sync: as on Linux, the unsynced data are lost, although programs still see
+  /// them.
+  void drop_unsynced(const std::string& path);
+  /// \param durably  whether the removal is synced
   void remove(const std::string& path, bool durably);
 
-  /// The files after a process was killed: everything that programs saw.
+  /// The files after a kill of the process: everything that programs saw.
   [[nodiscard]] DiskImage as_seen() const;
-  /// The files after a power cut: what was synced, and with `random` any part of the rest, sector
-  /// by sector.
-  /// \param random  may be null
+  /// The files after a power cut.
+  /// \param random  draws which unsynced sectors are on the disk; null: none
   [[nodiscard]] DiskImage after_power_cut(RandomStream* random) const;
 
  private:
@@ -51,9 +49,9 @@ class FaultDisk {
   };
   struct File {
     bool is_seen = false;
-    bool is_safe = false;
+    bool is_durable = false;
     Bytes seen;
-    Bytes safe;
+    Bytes durable;
     std::vector<Change> pending;  ///< seen by programs, but not durable
   };
 

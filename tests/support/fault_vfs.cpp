@@ -17,10 +17,10 @@ using Kind = Fault::Kind;
 constexpr const char* kName = "touchtrial-faults";
 constexpr std::size_t kIndexBytes = 32768;
 
-/// The result of an operation.
+/// What happens to an operation.
 enum class Verdict { done, half, failed, dead };
 
-bool ends_everything(Kind kind) {
+bool stops_process(Kind kind) {
   return kind == Kind::kill || kind == Kind::torn_kill || kind == Kind::power_cut ||
          kind == Kind::torn_power_cut;
 }
@@ -33,15 +33,15 @@ struct FaultVfs::State {
   FaultDisk disk;
   Fault fault;
   std::array<std::int64_t, kDiskOperations> counts{};
-  bool struck = false;
+  bool has_occurred = false;
   bool repaired = false;
   bool shares_memory = true;
   std::optional<DiskImage> left;  ///< the disk after a kill or a power cut
 
   [[nodiscard]] bool is_dead() const { return left.has_value(); }
   Verdict before(DiskOperation operation);
-  Verdict strike(DiskOperation operation);
-  void end();
+  Verdict inject(DiskOperation operation);
+  void record_end();
   [[nodiscard]] int code(int error) const { return fault.kind == Kind::full ? SQLITE_FULL : error; }
 };
 
@@ -53,12 +53,12 @@ Verdict FaultVfs::State::before(DiskOperation operation) {
   const std::int64_t number = fault.only
                                   ? counts[static_cast<std::size_t>(operation)]
                                   : std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
-  const bool now = number == fault.at || (struck && fault.lasts);
-  return now ? strike(operation) : Verdict::done;
+  const bool now = number == fault.at || (has_occurred && fault.is_persistent);
+  return now ? inject(operation) : Verdict::done;
 }
 
-Verdict FaultVfs::State::strike(DiskOperation operation) {
-  struck = true;
+Verdict FaultVfs::State::inject(DiskOperation operation) {
+  has_occurred = true;
   const bool writes = operation == DiskOperation::write;
   switch (fault.kind) {
     case Kind::short_write:
@@ -72,12 +72,12 @@ Verdict FaultVfs::State::strike(DiskOperation operation) {
       if (writes) return Verdict::half;
       [[fallthrough]];
     default:
-      end();
+      record_end();
       return Verdict::dead;
   }
 }
 
-void FaultVfs::State::end() {
+void FaultVfs::State::record_end() {
   RandomStream random(fault.seed, "power cut", static_cast<std::uint64_t>(fault.at));
   if (fault.kind == Kind::kill || fault.kind == Kind::torn_kill) {
     left = disk.as_seen();
@@ -90,7 +90,7 @@ namespace {
 
 FaultVfs::State* active = nullptr;
 
-/// An open file: the part that SQLite sees, and behind it the real one.
+/// SQLite's view of an open file, followed by the real file.
 struct FaultFile {
   sqlite3_file base;
   bool tracked;
@@ -134,7 +134,7 @@ int write_file(sqlite3_file* file, const void* buffer, int bytes, sqlite3_int64 
       return write_part(file, buffer, bytes, offset);
     case Verdict::half:
       static_cast<void>(write_part(file, buffer, bytes / 2, offset));
-      if (ends_everything(active->fault.kind)) active->end();
+      if (stops_process(active->fault.kind)) active->record_end();
       return SQLITE_IOERR_WRITE;
     default:
       return active->code(SQLITE_IOERR_WRITE);
@@ -158,7 +158,7 @@ int sync_file(sqlite3_file* file, int /*flags*/) {
     active->disk.sync(ours(file)->path);
     return SQLITE_OK;
   }
-  if (verdict == Verdict::failed) active->disk.lose(ours(file)->path);
+  if (verdict == Verdict::failed) active->disk.drop_unsynced(ours(file)->path);
   return SQLITE_IOERR_FSYNC;
 }
 
@@ -196,7 +196,7 @@ int unmap_index(sqlite3_file* file, int remove) {
   return real(file)->pMethods->xShmUnmap(real(file), remove);
 }
 
-// Version 2: files are not mapped, so that every write is seen.
+// Version 2 does not map files, so every write passes through here.
 constexpr sqlite3_io_methods kMethods = {
     2,          close_file,    read_file,   write_file,   truncate_file, sync_file,       file_size,
     lock_file,  unlock_file,   check_lock,  control_file, sector_size,   characteristics, map_index,
@@ -220,11 +220,11 @@ bool is_tracked(const char* path, int flags) {
   return path != nullptr && (flags & kKinds) != 0;
 }
 
-/// Tells the disk about a file that is about to be opened.
+/// Adds a file to the disk before it is opened.
 /// \return false if it must not be opened
-bool announce(const char* path, int flags) {
+bool add_to_disk(const char* path, int flags) {
   const bool exists = std::filesystem::exists(path);
-  if (exists && !active->disk.knows(path)) active->disk.adopt(path, content_of(path));
+  if (exists && !active->disk.contains(path)) active->disk.adopt(path, content_of(path));
   if (exists || (flags & SQLITE_OPEN_CREATE) == 0) return true;
   if (active->before(DiskOperation::create) != Verdict::done) return false;
   active->disk.create(path);
@@ -238,7 +238,7 @@ int open_file(sqlite3_vfs* /*vfs*/, const char* path, sqlite3_file* file, int fl
   mine->path = nullptr;
   mine->real = reinterpret_cast<sqlite3_file*>(mine + 1);
   mine->real->pMethods = nullptr;
-  if (mine->tracked && !announce(path, flags)) return active->code(SQLITE_CANTOPEN);
+  if (mine->tracked && !add_to_disk(path, flags)) return active->code(SQLITE_CANTOPEN);
   const int code = active->real->xOpen(active->real, path, mine->real, flags, granted);
   if (code != SQLITE_OK) return code;
   if (mine->tracked) mine->path = sqlite3_mprintf("%s", path);
@@ -247,14 +247,14 @@ int open_file(sqlite3_vfs* /*vfs*/, const char* path, sqlite3_file* file, int fl
 }
 
 int delete_file(sqlite3_vfs* /*vfs*/, const char* path, int sync_folder) {
-  if (active->disk.knows(path) && std::filesystem::exists(path)) {
+  if (active->disk.contains(path) && std::filesystem::exists(path)) {
     if (active->before(DiskOperation::remove) != Verdict::done) return SQLITE_IOERR_DELETE;
     active->disk.remove(path, sync_folder != 0);
   }
   return active->real->xDelete(active->real, path, 0);
 }
 
-void write_whole(const std::string& path, const Bytes& content) {
+void overwrite(const std::string& path, const Bytes& content) {
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
   file.write(reinterpret_cast<const char*>(content.data()),
              static_cast<std::streamsize>(content.size()));
@@ -273,7 +273,7 @@ FaultVfs::FaultVfs() : state_(std::make_unique<State>()) {
   state_->ours.xOpen = open_file;
   state_->ours.xDelete = delete_file;
   if (sqlite3_vfs_register(&state_->ours, 1) != SQLITE_OK) {
-    throw std::runtime_error("SQLite does not take another file system");
+    throw std::runtime_error("SQLite refuses another file system");
   }
   active = state_.get();
 }
@@ -286,7 +286,7 @@ FaultVfs::~FaultVfs() {
 void FaultVfs::plan(const Fault& fault) {
   state_->fault = fault;
   state_->counts = {};
-  state_->struck = false;
+  state_->has_occurred = false;
   state_->repaired = false;
 }
 
@@ -306,12 +306,12 @@ std::int64_t FaultVfs::count(DiskOperation operation) const noexcept {
   return state_->counts[static_cast<std::size_t>(operation)];
 }
 
-bool FaultVfs::struck() const noexcept {
-  return state_->struck;
+bool FaultVfs::has_occurred() const noexcept {
+  return state_->has_occurred;
 }
 
-void FaultVfs::start_anew() {
-  if (!state_->left) throw std::logic_error("neither a kill nor a power cut has come");
+void FaultVfs::restore_disk() {
+  if (!state_->left) throw std::logic_error("there was neither a kill nor a power cut");
   const DiskImage left = *std::exchange(state_->left, std::nullopt);
   state_->disk = {};
   for (const auto& [path, content] : left) {
@@ -321,8 +321,8 @@ void FaultVfs::start_anew() {
       std::filesystem::remove(path);
       continue;
     }
-    write_whole(path, *content);
-    if (left.count(path + "-wal") > 0) write_whole(path + "-shm", Bytes(kIndexBytes, 0xa5));
+    overwrite(path, *content);
+    if (left.count(path + "-wal") > 0) overwrite(path + "-shm", Bytes(kIndexBytes, 0xa5));
   }
   plan({});
 }

@@ -1,4 +1,4 @@
-/// \file A file system under SQLite that fails, is killed or loses power when a test requests it.
+/// \file A file system for SQLite that simulates failures, kills and power cuts.
 /// Source: "The SQLite OS Interface or VFS", https://www.sqlite.org/vfs.html
 #pragma once
 
@@ -17,28 +17,28 @@ namespace touchtrial::testing {
 enum class DiskOperation { create, write, truncate, sync, remove };
 inline constexpr std::size_t kDiskOperations = 5;
 
-/// The fault, and when it occurs.
+/// A fault and its time.
 struct Fault {
   enum class Kind {
     none,
     error,           ///< the operation fails with SQLITE_IOERR
     full,            ///< it fails with SQLITE_FULL
-    short_write,     ///< half of a write is done, then SQLITE_IOERR
-    kill,            ///< the process ends before it: all that was written stays
-    torn_kill,       ///< the process ends in the middle of it
-    power_cut,       ///< the machine ends before it: what was not synced is lost
-    torn_power_cut,  ///< the same, but any part of what was not synced is on the disk
+    short_write,     ///< half of the data is written, then SQLITE_IOERR
+    kill,            ///< the process ends before it; all written data remain
+    torn_kill,       ///< the process ends during it
+    power_cut,       ///< power fails before it; unsynced data are lost
+    torn_power_cut,  ///< the same, but any part of the unsynced data remains
   };
   Kind kind = Kind::none;
-  std::int64_t at = 0;                  ///< which operation, from 1, counted from FaultVfs::plan on
-  std::optional<DiskOperation> only{};  ///< counts only these operations
-  bool lasts = false;                   ///< errors: every later operation fails too, until `repair`
-  std::uint64_t seed = 1;               ///< decides which unsynced writes happen to be on the disk
+  std::int64_t at = 0;                  ///< number of the operation, from 1 after FaultVfs::plan
+  std::optional<DiskOperation> only{};  ///< the only operation that counts
+  bool is_persistent = false;           ///< all later operations fail until `repair`
+  std::uint64_t seed = 1;               ///< determines which unsynced writes remain
 };
 
-/// While it lives, every connection of this process goes through it. It passes operations on to
-/// SQLite's own file system (except syncs, which take long), and knows which of them are durable.
-/// One at a time; not thread-safe.
+/// During its lifetime all SQLite connections of this process use it. It forwards operations to
+/// SQLite's own file system (except syncs, which take long), and tracks which are durable. Only one
+/// may exist; not thread-safe.
 class FaultVfs {
  public:
   FaultVfs();
@@ -46,21 +46,20 @@ class FaultVfs {
   FaultVfs(const FaultVfs&) = delete;
   FaultVfs& operator=(const FaultVfs&) = delete;
 
-  /// Plans a fault; operations are counted from this call on.
+  /// Sets the fault, and restarts the count of operations.
   void plan(const Fault& fault);
-  /// From now on, files are opened as on a file system without shared memory.
+  /// Opens later files as on a file system without shared memory.
   void forbid_shared_memory();
   /// Ends lasting errors.
   void repair();
-  /// Operations since `plan`.
+  /// Number of operations since `plan`.
   [[nodiscard]] std::int64_t operations() const noexcept;
   [[nodiscard]] std::int64_t count(DiskOperation operation) const noexcept;
   /// Whether the planned fault has occurred.
-  [[nodiscard]] bool struck() const noexcept;
-  /// Call this after a kill or a power cut, when every connection is closed. Restores the disk to
-  /// the state at that moment, whatever destructors have written since. Index files (-shm) then
-  /// contain garbage.
-  void start_anew();
+  [[nodiscard]] bool has_occurred() const noexcept;
+  /// Restores the disk to its state at the kill or power cut, without later writes of destructors.
+  /// Requires that all connections are closed. Fills index files (-shm) with garbage.
+  void restore_disk();
 
   struct State;
 

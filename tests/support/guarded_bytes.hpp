@@ -1,4 +1,4 @@
-/// \file Memory whose pages can be made inaccessible: reading one then ends the test.
+/// \file Memory with pages that can be made inaccessible, so that reading them ends the test.
 #pragma once
 
 #include "support/catch.hpp"
@@ -17,7 +17,7 @@ inline std::size_t page_size() {
   return static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
 }
 
-/// A copy of some bytes, on pages of its own.
+/// A copy of bytes on separate pages.
 class GuardedBytes {
  public:
   explicit GuardedBytes(std::span<const std::byte> bytes)
@@ -37,7 +37,7 @@ class GuardedBytes {
   }
   [[nodiscard]] std::size_t pages() const { return (size_ + page_size() - 1) / page_size(); }
 
-  /// Makes all pages inaccessible except these, which count from 0.
+  /// Makes all pages inaccessible except these (from 0).
   void leave_only(const std::set<std::size_t>& pages) {
     REQUIRE(::mprotect(memory_, size_, PROT_NONE) == 0);
     for (const std::size_t page : pages) {

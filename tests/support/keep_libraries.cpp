@@ -1,5 +1,5 @@
-// Linked into every program under AddressSanitizer: libraries stay loaded, so that what those of
-// others leak (drivers of the graphics card, above all) has a name in tests/leaks-of-others.txt.
+// Linked into every program under AddressSanitizer. Libraries stay loaded, so that leaks of third
+// parties (mostly graphics drivers) have symbols for tests/leaks-of-others.txt.
 extern "C" int dlclose(void* /*library*/) noexcept {
   return 0;
 }

@@ -1,4 +1,4 @@
-// Makes the program's protocols known to a test program before its first test.
+// Registers the program's protocols before a test program's first test.
 #include "protocols/registration/registration.hpp"
 
 namespace touchtrial {

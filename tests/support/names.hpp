@@ -1,4 +1,4 @@
-/// \file What a message names, whatever its words: files, JSON pointers, options, keys, numbers.
+/// \file Asserts the files, JSON pointers, options, keys and numbers in a message, not its words.
 #pragma once
 
 #include "support/catch.hpp"
@@ -12,8 +12,8 @@
 
 namespace touchtrial {
 
-/// Where `place` begins in `message` at or after `from`; npos if nowhere. A place that begins or
-/// ends with a letter or digit is not part of a longer word or number.
+/// \return the position of `place` in `message` at or after `from`, else npos. A place that begins or
+///   ends with a letter or digit must not be part of a longer word or number.
 [[nodiscard]] inline std::size_t find_place(const std::string& message, const std::string& place,
                                             std::size_t from = 0) {
   const auto is_part = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
@@ -28,13 +28,13 @@ namespace touchtrial {
   return std::string::npos;
 }
 
-/// What blanks separate in `places`.
+/// Splits `places` at blanks.
 [[nodiscard]] inline std::vector<std::string> separate_places(const std::string& places) {
   std::istringstream list(places);
   return {std::istream_iterator<std::string>(list), {}};
 }
 
-/// Whether `message` names each of `places`, which blanks separate, in any order.
+/// Whether `message` contains each of the blank-separated `places`, in any order.
 [[nodiscard]] inline bool names(const std::string& message, const std::string& places) {
   const auto all = separate_places(places);
   return !all.empty() && std::ranges::all_of(all, [&](const std::string& place) {
@@ -42,8 +42,7 @@ namespace touchtrial {
   });
 }
 
-/// Whether `message` names `places` in this order, each after the one before: numbers whose order
-/// says what they count.
+/// Whether `message` contains `places` in this order, for numbers that only their order identifies.
 [[nodiscard]] inline bool names_in_order(const std::string& message, const std::string& places) {
   const auto all = separate_places(places);
   std::size_t from = 0;
@@ -54,7 +53,7 @@ namespace touchtrial {
   });
 }
 
-/// A matcher for messages that name each of `places`, which blanks separate.
+/// A matcher for messages that contain each of the blank-separated `places`.
 class NamesPlaces final : public
 #if __has_include(<catch2/catch_all.hpp>)
                           Catch::Matchers::MatcherBase<std::string>

@@ -40,7 +40,7 @@ NpyArray read_npy(const std::filesystem::path& path) {
       R"(\{'descr': '(\|u1|<f4|<f8)', 'fortran_order': False, 'shape': \(((?:\d+,)+)\), \} *\n)");
   const std::string begin("\x93NUMPY\x01\x00", 8);
   const auto at = [&](std::size_t place) { return static_cast<unsigned char>(bytes.at(place)); };
-  if (!bytes.starts_with(begin)) throw std::runtime_error(path.string() + " is no .npy file");
+  if (!bytes.starts_with(begin)) throw std::runtime_error(path.string() + " is not a .npy file");
   const std::size_t header_size = at(8) + 256U * at(9);
   const std::string header = bytes.substr(10, header_size);
   std::smatch found;
@@ -51,7 +51,8 @@ NpyArray read_npy(const std::filesystem::path& path) {
   NpyArray array{found[1], shape_from(found[2]), samples_of(found[1], data)};
   std::size_t size = static_cast<std::size_t>(array.type[2] - '0');
   for (const int extent : array.shape) size *= static_cast<std::size_t>(extent);
-  if (data.size() != size) throw std::runtime_error(path.string() + " has other data than it says");
+  if (data.size() != size)
+    throw std::runtime_error(path.string() + " has data that do not match its header");
   return array;
 }
 

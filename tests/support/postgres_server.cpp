@@ -23,11 +23,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A loaded machine may take long; a broken server ends and is noticed at once.
-constexpr std::chrono::minutes kPatience{2};
+/// For a loaded machine; a broken server ends and is detected at once.
+constexpr std::chrono::minutes kTimeout{2};
 constexpr std::chrono::milliseconds kPollInterval{10};
 
-/// The folder with initdb and postgres of the newest version that is installed.
+/// The folder with initdb and postgres of the newest installed version.
 fs::path find_programs() {
   std::vector<std::pair<int, fs::path>> found;
   std::error_code none;
@@ -43,17 +43,17 @@ fs::path find_programs() {
   return std::max_element(found.begin(), found.end())->second;
 }
 
-/// The user who runs the server: another one if we are root, else null.
-const passwd* other_user() {
+/// The user who runs the server if we are root; else null.
+const passwd* server_user() {
   if (geteuid() != 0) return nullptr;
   const passwd* const user = getpwnam("postgres");
-  if (user == nullptr) throw std::runtime_error("there is no user postgres to run the server as");
+  if (user == nullptr) throw std::runtime_error("there is no user postgres to run the server");
   return user;
 }
 
-void give(const fs::path& path, const passwd* user) {
+void set_owner(const fs::path& path, const passwd* user) {
   if (user != nullptr && chown(path.c_str(), user->pw_uid, user->pw_gid) != 0) {
-    throw std::runtime_error("cannot hand " + path.string() + " to the user postgres");
+    throw std::runtime_error("cannot make the user postgres the owner of " + path.string());
   }
 }
 
@@ -64,8 +64,8 @@ std::string text_of(const fs::path& path) {
   return text.str();
 }
 
-/// In the child. Never returns.
-[[noreturn]] void become(std::vector<char*>& arguments, const passwd* user, int log) {
+/// Runs in the child.
+[[noreturn]] void exec_server(std::vector<char*>& arguments, const passwd* user, int log) {
   if (user != nullptr && (setgroups(0, nullptr) != 0 || setgid(user->pw_gid) != 0 ||
                           setuid(user->pw_uid) != 0 || chdir("/") != 0)) {
     _exit(126);
@@ -90,11 +90,11 @@ using Result = std::unique_ptr<PGresult, decltype(&PQclear)>;
 }  // namespace
 
 PostgresServer::PostgresServer(Writes writes) : writes_(writes), programs_(find_programs()) {
-  give(folder_.path(), other_user());
+  set_owner(folder_.path(), server_user());
   for (const fs::path& folder : {folder_.path() / "data", socket_folder()}) {
     fs::create_directory(folder);
     fs::permissions(folder, fs::perms::owner_all);
-    give(folder, other_user());
+    set_owner(folder, server_user());
   }
   initialise();
   start();
@@ -110,15 +110,15 @@ void PostgresServer::initialise() const {
 }
 
 pid_t PostgresServer::launch(const std::vector<std::string>& arguments) const {
-  std::vector<std::string> kept = arguments;
+  std::vector<std::string> argument_copy = arguments;
   std::vector<char*> pointers;
-  for (std::string& argument : kept) pointers.push_back(argument.data());
+  for (std::string& argument : argument_copy) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
-  const passwd* const user = other_user();
+  const passwd* const user = server_user();
   const int log =
       open((folder_.path() / "log").c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
   const pid_t process = fork();
-  if (process == 0) become(pointers, user, log);
+  if (process == 0) exec_server(pointers, user, log);
   close(log);
   return process;
 }
@@ -130,7 +130,7 @@ void PostgresServer::run(const std::vector<std::string>& arguments) const {
   }
 }
 
-bool PostgresServer::answers() const {
+bool PostgresServer::accepts_connections() const {
   const std::string where = "host=" + socket_folder().string() + " dbname=postgres user=postgres";
   const Connection connection(PQconnectdb(where.c_str()), PQfinish);
   return PQstatus(connection.get()) == CONNECTION_OK;
@@ -141,8 +141,8 @@ void PostgresServer::start() {
   process_ = launch({(programs_ / "postgres").string(), "-D", (folder_.path() / "data").string(),
                      "-k", socket_folder().string(), "-c", "listen_addresses=", "-c", fsync, "-c",
                      "max_connections=40", "-c", "shared_buffers=16MB"});
-  const auto until = std::chrono::steady_clock::now() + kPatience;
-  while (!answers()) {
+  const auto until = std::chrono::steady_clock::now() + kTimeout;
+  while (!accepts_connections()) {
     const bool ended = waitpid(process_, nullptr, WNOHANG) != 0;
     if (ended || std::chrono::steady_clock::now() > until) {
       if (ended) process_ = -1;
@@ -161,12 +161,12 @@ void PostgresServer::kill() {
   ::kill(process_, SIGKILL);
   waitpid(process_, nullptr, 0);
   process_ = -1;
-  // They hold its shared memory until they are gone, and it would not start again before.
-  const auto is_there = [](pid_t child) {
+  // The children keep its shared memory, without which it cannot restart.
+  const auto is_alive = [](pid_t child) {
     return ::kill(child, 0) == 0 &&
            text_of("/proc/" + std::to_string(child) + "/stat").find(") Z") == std::string::npos;
   };
-  while (std::any_of(children.begin(), children.end(), is_there)) {
+  while (std::any_of(children.begin(), children.end(), is_alive)) {
     std::this_thread::sleep_for(kPollInterval);
   }
 }

@@ -1,5 +1,5 @@
-/// \file A real PostgreSQL server for tests: a cluster of its own in a temporary folder, on a Unix
-/// socket and nothing else.
+/// \file A real PostgreSQL server for tests: a cluster in a temporary folder that listens only on a
+/// Unix socket.
 #pragma once
 
 #include "support/temp_folder.hpp"
@@ -12,11 +12,11 @@
 
 namespace touchtrial::testing {
 
-/// Starts with the object and ends with it, and with the test's process however that ends. Run as
-/// root it belongs to the user postgres, as PostgreSQL refuses root.
+/// Runs during the object's lifetime, and never outlives the test's process. For root it runs as
+/// the user postgres, because PostgreSQL refuses root.
 class PostgresServer {
  public:
-  enum class Writes { safe, unsafe };  ///< unsafe: without fsync, for tests that kill nothing
+  enum class Writes { safe, unsafe };  ///< unsafe: without fsync, for tests without kill()
 
   static constexpr const char* kAdministrator = "postgres";
 
@@ -26,7 +26,7 @@ class PostgresServer {
   PostgresServer(const PostgresServer&) = delete;
   PostgresServer& operator=(const PostgresServer&) = delete;
 
-  /// Makes a new, empty database.
+  /// Creates an empty database.
   void make_database(const std::string& name);
   /// Executes statements in a database as the administrator.
   /// \return the first column of the result's rows
@@ -35,19 +35,18 @@ class PostgresServer {
   /// postgresql:// address of a database.
   [[nodiscard]] std::string url(const std::string& database,
                                 const std::string& user = kAdministrator) const;
-  /// Where its socket lies.
   [[nodiscard]] std::filesystem::path socket_folder() const { return folder_.path() / "socket"; }
 
-  /// Every process of it dies at once, as if by a power cut.
+  /// Kills all its processes, as a power cut would.
   void kill();
-  /// After kill(): comes back with what it had on disk.
+  /// Restarts after kill() with the data on disk.
   void start();
 
  private:
   void initialise() const;
   [[nodiscard]] pid_t launch(const std::vector<std::string>& arguments) const;
   void run(const std::vector<std::string>& arguments) const;
-  [[nodiscard]] bool answers() const;
+  [[nodiscard]] bool accepts_connections() const;
 
   Writes writes_;
   TempFolder folder_;

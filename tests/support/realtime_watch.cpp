@@ -58,7 +58,7 @@ bool touchtrial::locks_are_watched() noexcept {
   return true;
 }
 
-// The C library's own, under the names that it keeps for those who put theirs in between.
+// Aliases of the C library's functions, for replacements.
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
@@ -103,11 +103,11 @@ void free(void* block) noexcept {
 
 namespace {
 
-/// The next function of a name, behind ours. Looked up at the first call, from any thread.
+/// The replaced function with this name, looked up at the first call. Thread-safe.
 template <typename Function>
-class Behind {
+class ReplacedFunction {
  public:
-  constexpr explicit Behind(const char* name) noexcept : name_(name) {}
+  constexpr explicit ReplacedFunction(const char* name) noexcept : name_(name) {}
 
   [[nodiscard]] Function get() noexcept {
     Function found = found_.load(std::memory_order_relaxed);
@@ -123,10 +123,10 @@ class Behind {
   std::atomic<Function> found_{nullptr};
 };
 
-constinit Behind<int (*)(pthread_mutex_t*)> mutex_lock("pthread_mutex_lock");
-constinit Behind<int (*)(pthread_mutex_t*)> mutex_trylock("pthread_mutex_trylock");
-constinit Behind<int (*)(pthread_rwlock_t*)> rwlock_rdlock("pthread_rwlock_rdlock");
-constinit Behind<int (*)(pthread_rwlock_t*)> rwlock_wrlock("pthread_rwlock_wrlock");
+constinit ReplacedFunction<int (*)(pthread_mutex_t*)> mutex_lock("pthread_mutex_lock");
+constinit ReplacedFunction<int (*)(pthread_mutex_t*)> mutex_trylock("pthread_mutex_trylock");
+constinit ReplacedFunction<int (*)(pthread_rwlock_t*)> rwlock_rdlock("pthread_rwlock_rdlock");
+constinit ReplacedFunction<int (*)(pthread_rwlock_t*)> rwlock_wrlock("pthread_rwlock_wrlock");
 
 }  // namespace
 

@@ -1,12 +1,12 @@
-/// \file Counts what the servo's loop must never do. Linking it puts counting functions in the
-/// place of the C library's: malloc and its kin, operator new through them, and the locks.
+/// \file Counts allocations and locks, which are forbidden in the servo's loop. Linking it replaces
+/// the C library's malloc family (and so operator new) and locks by counting functions.
 #pragma once
 
 #include <cstdint>
 
 namespace touchtrial {
 
-/// What threads did while they were inside a RealtimeRegion.
+/// Calls of threads inside a RealtimeRegion.
 struct RealtimeOffences {
   std::int64_t allocations = 0;
   std::int64_t frees = 0;
@@ -15,11 +15,11 @@ struct RealtimeOffences {
   friend bool operator==(const RealtimeOffences&, const RealtimeOffences&) = default;
 };
 
-/// Those of all threads since the last call.
+/// Offences of all threads since the last call.
 [[nodiscard]] RealtimeOffences take_realtime_offences() noexcept;
 
-/// Whether locks are counted: sanitizers have their own functions in those places, which must stay.
-/// Allocations are counted there by the sanitizers' hooks.
+/// Whether locks are counted. Sanitizers replace the locks themselves; with them only allocations
+/// are counted, by the sanitizers' hooks.
 [[nodiscard]] bool locks_are_watched() noexcept;
 
 }  // namespace touchtrial

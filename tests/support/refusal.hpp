@@ -1,4 +1,4 @@
-/// \file The message with which an operation refuses its input.
+/// \file Asserts that an operation refuses its input, and with which message.
 #pragma once
 
 #include "support/catch.hpp"
@@ -9,7 +9,7 @@
 
 namespace touchtrial {
 
-/// The message of the error of this type that the call throws; empty if it throws nothing.
+/// The message of the `ErrorType` that the call throws; empty if it throws nothing.
 template <typename ErrorType, typename Call>
 [[nodiscard]] std::string message_of(Call&& call) {
   try {
@@ -20,8 +20,8 @@ template <typename ErrorType, typename Call>
   return {};
 }
 
-/// Whether the call throws an error of the type whose message names `places` (support/names.hpp);
-/// without places any such error will do.
+/// Whether the call throws an `ErrorType` whose message contains `places` (support/names.hpp);
+/// without places, any message.
 template <typename ErrorType, typename Call>
 [[nodiscard]] bool refuses(Call&& call, const std::string& places = {}) {
   const std::string message = message_of<ErrorType>(call);

@@ -1,4 +1,4 @@
-/// \file Whether the tests run with a sanitizer, which has memory and functions of its own.
+/// \file Whether the tests run with a sanitizer, which replaces memory functions.
 #pragma once
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)

@@ -1,11 +1,11 @@
-/// \file A folder that lives as long as a test.
+/// \file A temporary folder for a test.
 #pragma once
 
 #include <filesystem>
 
 namespace touchtrial {
 
-/// Makes an empty folder of its own and removes it with everything in it.
+/// Creates an empty folder, and removes it with its content on destruction.
 class TempFolder {
  public:
   TempFolder();

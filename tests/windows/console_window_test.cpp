@@ -21,7 +21,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 using Kind = session::ExperimenterRequest::Kind;
-using What = app::ExperimenterAction::What;
+using Action = app::ExperimenterAction::Kind;
 
 constexpr const char* kTitle = "Touchtrial";
 constexpr const char* kConsoleTitle = "Touchtrial console";
@@ -33,7 +33,7 @@ session::SessionStatus status(const std::string& stage = "answering") {
   return {.participant = "P07",
           .stage = stage,
           .trial = 7,
-          .of = 25,
+          .total = 25,
           .elapsed = std::chrono::seconds(754),
           .device = "Falcon 1, serial 4711",
           .rate_hz = 1000.0,
@@ -131,13 +131,13 @@ std::pair<int, int> middle_of_vermillion(const engine::ColourImage& picture, boo
 }
 
 /// The middle of an action's button, below that of the comfort stop if it is in the second row.
-std::pair<int, int> button_of(const engine::ColourImage& picture, What what) {
+std::pair<int, int> button_of(const engine::ColourImage& picture, Action action) {
   constexpr int kColumns = 4;
   constexpr int kMargin = 20;
   constexpr int kGap = 10;
   constexpr int kRow = 44 + kGap;
   const int width = (picture.width() - 2 * kMargin - (kColumns - 1) * kGap) / kColumns;
-  const int index = static_cast<int>(what);
+  const int index = static_cast<int>(action);
   const int first_row = middle_of_vermillion(picture, false).second;
   return {kMargin + width / 2 + index % kColumns * (width + kGap),
           first_row + index / kColumns * kRow};
@@ -149,14 +149,15 @@ bool is(const std::optional<session::ExperimenterRequest>& request, Kind kind,
 }
 
 /// What an action changes: what the session is told, and what the experimenter is asked.
-std::string effect_of(app::ExperimenterDesk& desk, What what, const std::function<void()>& act) {
+std::string effect_of(app::ExperimenterDesk& desk, Action action,
+                      const std::function<void()>& act) {
   desk.discard();
   desk.show(status("paused"));  // the end of a pause ends what was asked before
-  if (what != What::resume) desk.show(status());
-  const std::string need = what == What::at_reset ? "reset the arm" : "";
-  static_cast<void>(desk.attend(need));
+  if (action != Action::resume) desk.show(status());
+  const std::string need = action == Action::at_reset ? "reset the arm" : "";
+  static_cast<void>(desk.poll(need));
   act();
-  std::string effect = std::to_string(static_cast<int>(desk.attend(need)));
+  std::string effect = std::to_string(static_cast<int>(desk.poll(need)));
   while (const auto request = desk.request()) {
     effect += " " + std::to_string(static_cast<int>(request->kind));
   }
@@ -176,14 +177,14 @@ TEST_CASE("terminal and window offer every action, to the same effect") {
     room.desk.show(status());
     const engine::ColourImage picture = room.window.console_picture();
     std::set<std::string> effects;
-    for (const auto& [what, key, label] : app::kExperimenterActions) {
+    for (const auto& [action, key, label] : app::kExperimenterActions) {
       INFO(label);
       const std::string effect =
-          effect_of(room.desk, what, [&, what = what] { room.desk.act(what); });
-      CHECK(effect_of(room.desk, what, [&, key = key] { keys = key; }) == effect);
-      CHECK(effect_of(room.desk, what, [&, what = what] {
+          effect_of(room.desk, action, [&, action = action] { room.desk.act(action); });
+      CHECK(effect_of(room.desk, action, [&, key = key] { keys = key; }) == effect);
+      CHECK(effect_of(room.desk, action, [&, action = action] {
               static_cast<void>(room.window.console_picture());
-              room.click(button_of(picture, what));
+              room.click(button_of(picture, action));
             }) == effect);
       effects.insert(effect);
     }
@@ -197,7 +198,7 @@ TEST_CASE("the window answers the day sheet and spoken answers") {
     const std::vector<session::DaySheetItem> sheet{{"no-a", "A is there"}};
     CHECK_FALSE(room.desk.day_sheet(sheet));
     const engine::ColourImage picture = room.window.console_picture();
-    const auto [x, y] = button_of(picture, What::deviation);
+    const auto [x, y] = button_of(picture, Action::deviation);
     constexpr int kFirstChoiceBelow = 90;
     room.click({50, y + kFirstChoiceBelow});
     CHECK(room.desk.day_sheet(sheet) == std::vector{session::Tick::done});
@@ -210,7 +211,7 @@ TEST_CASE("the console lies below the participant's window where there is no roo
     room.desk.show(status());
     const engine::ColourImage picture = room.window.console_picture();
     CHECK(picture.height() == 480);
-    room.click(button_of(picture, What::pause));
+    room.click(button_of(picture, Action::pause));
     CHECK(is(room.request(), Kind::pause));
   });
 }
@@ -220,7 +221,7 @@ TEST_CASE("the console asks again before a session is aborted, and Enter does no
   room.run([&] {
     room.desk.show(status());
     const engine::ColourImage picture = room.window.console_picture();
-    room.click(button_of(picture, What::abort));
+    room.click(button_of(picture, Action::abort));
     room.type("i l l Return");
     CHECK_FALSE(room.desk.request());
     room.click(middle_of_vermillion(room.window.console_picture(), true));
@@ -235,17 +236,17 @@ TEST_CASE("keys over the console are the participant's, except while text is wri
   room.run([&] {
     room.desk.show(status());
     const engine::ColourImage picture = room.window.console_picture();
-    const session::AnswerStep answer{.trial = 7, .of = 25};
-    CHECK_FALSE(room.window.attend(answer));
+    const session::AnswerStep answer{.trial = 7, .total = 25};
+    CHECK_FALSE(room.window.show_step(answer));
     CHECK(room.window.wait_until_shown(kPatience));
-    room.click(button_of(picture, What::note));
+    room.click(button_of(picture, Action::note));
     room.type("1 2 Return");
     CHECK(is(room.request(), Kind::note, "12"));
-    for (int i = 0; i < 20; ++i) CHECK_FALSE(room.window.attend(answer));
+    for (int i = 0; i < 20; ++i) CHECK_FALSE(room.window.show_step(answer));
     room.type("2 Return");
     std::optional<session::StepReply> reply;
     const auto give_up = steady_clock::now() + kPatience;
-    while (!reply && steady_clock::now() < give_up) reply = room.window.attend(answer);
+    while (!reply && steady_clock::now() < give_up) reply = room.window.show_step(answer);
     REQUIRE(reply);
     CHECK(position_of(reply->answer) == 1);
   });
@@ -256,21 +257,21 @@ TEST_CASE("while a plane is on the space bar is a comfort stop even where a note
   room.run([&] {
     room.desk.show(status("exploring"));
     const engine::ColourImage picture = room.window.console_picture();
-    room.click(button_of(picture, What::note));
+    room.click(button_of(picture, Action::note));
     room.type("h o t");
     room.window.show_exploring({0.2, 256, 256});
     CHECK(room.window.wait_until_shown(kPatience));
     device::ServoControl servo;
-    room.window.exploring(servo);
-    CHECK_FALSE(servo.comfort_stop_asked());
+    room.window.while_exploring(servo);
+    CHECK_FALSE(servo.comfort_stop_requested());
     room.screen->type("space");
     const auto give_up = steady_clock::now() + kPatience;
-    while (!servo.comfort_stop_asked() && steady_clock::now() < give_up) {
-      room.window.exploring(servo);
+    while (!servo.comfort_stop_requested() && steady_clock::now() < give_up) {
+      room.window.while_exploring(servo);
       std::this_thread::sleep_for(milliseconds(1));
     }
-    CHECK(servo.comfort_stop_asked());
-    room.click(button_of(picture, What::comfort_stop));
+    CHECK(servo.comfort_stop_requested());
+    room.click(button_of(picture, Action::comfort_stop));
     CHECK(is(room.request(), Kind::comfort_stop));
   });
 }
@@ -281,7 +282,7 @@ TEST_CASE("the console is the same to the last byte, whatever the participant se
     std::optional<engine::ColourImage> first;
     room.desk.show(status());
     for (const int position : {0, 1}) {
-      CHECK_FALSE(room.window.attend(session::FeedbackStep{0, position}));
+      CHECK_FALSE(room.window.show_step(session::FeedbackStep{0, position}));
       CHECK(room.window.wait_until_shown(kPatience));
       const engine::ColourImage picture = room.window.console_picture();
       if (!first) first = picture;

@@ -84,11 +84,11 @@ struct Drawn {
       : context{.words = &words_in(language),
                 .language = language,
                 .shelf = &shelf,
-                .glass = &glass},
+                .physical_scale = &physical_scale},
         screen(app::screen_for(step, context, labels)) {}
   [[nodiscard]] app::Canvas draw() { return paper.draw(*screen); }
   std::optional<session::StepReply> press(app::Key which, int digit = 0) {
-    std::optional<session::StepReply> reply = screen->take(key(which, digit));
+    std::optional<session::StepReply> reply = screen->handle(key(which, digit));
     static_cast<void>(draw());
     return reply;
   }
@@ -96,13 +96,13 @@ struct Drawn {
   void write(const std::u32string& letters) {
     for (const char32_t letter : letters) {
       app::InputEvent event{.kind = app::InputEvent::Kind::letter, .letter = letter};
-      CHECK_FALSE(screen->take(event));
+      CHECK_FALSE(screen->handle(event));
     }
   }
 
   Paper paper{{1280.0, 720.0}};
   Squares shelf{51.2};
-  app::Glass glass{0.27, true};
+  app::PhysicalScale physical_scale{0.27, true};
   app::ScreenContext context;
   std::shared_ptr<app::Screen> screen;
 };
@@ -133,7 +133,7 @@ inline std::string faults_of(const app::Canvas& canvas) {
       }
     }
   }
-  if (!canvas.missing().empty()) faults += "a letter that no font has\n";
+  if (!canvas.missing_letters().empty()) faults += "a letter that no font has\n";
   const std::vector<app::Target>& targets = canvas.targets();
   for (std::size_t i = 0; i < targets.size(); ++i) {
     if (!lies_inside(targets[i].box, all)) faults += "a button is off the screen\n";

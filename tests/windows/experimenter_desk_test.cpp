@@ -29,7 +29,7 @@ struct Terminal {
     };
     if (!has_keys) terminal.key = nullptr;
     terminal.write = [this](const std::string& text) { written += text; };
-    terminal.rewrites = has_rewrites;
+    terminal.can_rewrite = has_rewrites;
     face.emplace(desk, terminal);
     written.clear();
   }
@@ -49,7 +49,7 @@ struct Terminal {
 };
 
 session::SessionStatus exploring() {
-  return {.participant = "P07", .stage = "exploring", .trial = 3, .of = 25};
+  return {.participant = "P07", .stage = "exploring", .trial = 3, .total = 25};
 }
 
 bool is_same(const session::ExperimenterRequest& a, const session::ExperimenterRequest& b) {
@@ -122,8 +122,8 @@ TEST_CASE("the status line is overwritten and never wraps") {
   CHECK(terminal.written.find('\n') == std::string::npos);
   CHECK(terminal.written.front() == '\r');
   CHECK(terminal.written.size() == 1 + 79 + 3);
-  CHECK(app::first_of("\xc3\xa4\xc3\xb6\xc3\xbc", 2) == "\xc3\xa4\xc3\xb6");
-  CHECK(app::last_of("\xc3\xa4\xc3\xb6\xc3\xbc", 2) == "\xc3\xb6\xc3\xbc");
+  CHECK(app::first_characters("\xc3\xa4\xc3\xb6\xc3\xbc", 2) == "\xc3\xa4\xc3\xb6");
+  CHECK(app::last_characters("\xc3\xa4\xc3\xb6\xc3\xbc", 2) == "\xc3\xb6\xc3\xbc");
 }
 
 TEST_CASE("the participant's stop is announced once with a sound, and advice") {
@@ -169,21 +169,21 @@ TEST_CASE("force requires a key press while nothing is missing") {
   Terminal terminal;
   app::ExperimenterDesk& desk = terminal.desk;
   terminal.keys = "g";
-  CHECK(desk.attend("move the handle") == Reply::wait);
-  CHECK(desk.attend("") == Reply::wait);
+  CHECK(desk.poll("move the handle") == Reply::wait);
+  CHECK(desk.poll("") == Reply::wait);
   // Meanwhile, the session takes requests and shows its status.
   CHECK(terminal.typed("g").empty());
   desk.show(exploring());
-  CHECK(desk.attend("") == Reply::arm);
-  CHECK(desk.attend("") == Reply::wait);
+  CHECK(desk.poll("") == Reply::arm);
+  CHECK(desk.poll("") == Reply::wait);
   CHECK(terminal.typed("g").empty());
-  CHECK(desk.attend("put it into the inkwell") == Reply::wait);
-  CHECK(desk.attend("") == Reply::wait);
+  CHECK(desk.poll("put it into the inkwell") == Reply::wait);
+  CHECK(desk.poll("") == Reply::wait);
   // A note in between: the line that announces the force has to be shown again.
   CHECK(terminal.typed("gnlate\n").size() == 1);
-  CHECK(desk.attend("") == Reply::wait);
+  CHECK(desk.poll("") == Reply::wait);
   terminal.keys = "ayes\nfire alarm\n";
-  CHECK(desk.attend("") == Reply::stop);
+  CHECK(desk.poll("") == Reply::stop);
   CHECK(terminal.typed("").at(0).text == "fire alarm");
 }
 
@@ -192,12 +192,12 @@ TEST_CASE("the arm is at its reset position by a key that is pressed when the li
   Terminal terminal;
   app::ExperimenterDesk& desk = terminal.desk;
   CHECK(terminal.typed("h").empty());
-  CHECK(desk.attend("reset the arm") == Reply::wait);
+  CHECK(desk.poll("reset the arm") == Reply::wait);
   terminal.keys = "h";
-  CHECK(desk.attend("reset the arm") == Reply::at_reset);
-  CHECK(desk.attend("reset the arm") == Reply::wait);
+  CHECK(desk.poll("reset the arm") == Reply::at_reset);
+  CHECK(desk.poll("reset the arm") == Reply::wait);
   terminal.keys = "h";
-  CHECK(desk.attend("") == Reply::wait);
+  CHECK(desk.poll("") == Reply::wait);
 }
 
 TEST_CASE("the line says how the hand presses and strokes while it is at the plane") {
@@ -229,7 +229,7 @@ struct SpokenTerminal : Terminal {
   /// The reply after these keys.
   std::optional<session::StepReply> reply(const std::string& more) {
     keys += more;
-    return spoken.attend(step);
+    return spoken.show_step(step);
   }
 
   Blindfolded participant;

@@ -44,7 +44,7 @@ app::ParticipantAnswers answers_to(Replies replies, const std::string& version,
   app::ParticipantQuestions questions;
   questions.session.language = language;
   questions.session.consent_version = version;
-  questions.proposed = "P07";
+  questions.proposed_id = "P07";
   questions.note = "P07 is due for visit 2 of 2.";
   questions.refusal = [](const std::string& id) {
     return id == "P06" ? std::string("P06 was here.") : std::string();
@@ -127,14 +127,14 @@ TEST_CASE("the experimenter answers in a window, where the proposed id stands al
     int step = 0;
     answers = app::ask_participant(
         [&](const session::QuestionStep& asked) {
-          CHECK_FALSE(window.attend(asked));
+          CHECK_FALSE(window.show_step(asked));
           CHECK(window.wait_until_shown(kPatience));
           press(window, step++ == 0 ? "8#1#" : "3#2#");
           for (;;) {
-            if (const auto reply = window.attend(asked)) return reply->answers;
+            if (const auto reply = window.show_step(asked)) return reply->answers;
           }
         },
-        {.proposed = "P0", .refusal = [](const std::string&) { return std::string(); }});
+        {.proposed_id = "P0", .refusal = [](const std::string&) { return std::string(); }});
   });
   CHECK(answers.id == "P08");
   CHECK(answers.has_consented);

@@ -64,7 +64,7 @@ struct Sitting {
 
   /// Waits until a step is visible; session's thread.
   void show(const session::Step& step) {
-    CHECK_FALSE(window.attend(step));
+    CHECK_FALSE(window.show_step(step));
     CHECK(window.wait_until_shown(kPatience));
   }
   /// Waits until the window shows the effect of all events.
@@ -86,7 +86,7 @@ struct Sitting {
   std::optional<session::StepReply> reply_to(const session::Step& step) {
     const auto give_up = steady_clock::now() + kPatience;
     while (steady_clock::now() < give_up && !window.end_reason()) {
-      if (const auto reply = window.attend(step)) return reply;
+      if (const auto reply = window.show_step(step)) return reply;
     }
     return std::nullopt;
   }
@@ -103,12 +103,12 @@ struct Sitting {
 };
 
 session::AnswerStep answer_step(int trial = 1) {
-  return {.trial = trial, .of = 25};
+  return {.trial = trial, .total = 25};
 }
 
 class CountedCues final : public app::Cues {
  public:
-  void tone(app::Cue cue) noexcept override {
+  void play(app::Cue cue) noexcept override {
     if (cue == app::Cue::too_hard) ++too_hard;
     if (cue == app::Cue::stopped) ++stopped;
     if (cue == app::Cue::first_begins) mark(1);
@@ -168,7 +168,7 @@ TEST_CASE("a key that was pressed before a screen was shown does nothing on it")
     sitting.type("Return Return Return");
     CHECK(sitting.reply_to(session::ReadyStep{1, 25, false}));
     sitting.show(session::BreakStep{1, 25});
-    for (int i = 0; i < 10; ++i) CHECK_FALSE(sitting.window.attend(session::BreakStep{1, 25}));
+    for (int i = 0; i < 10; ++i) CHECK_FALSE(sitting.window.show_step(session::BreakStep{1, 25}));
   });
 }
 
@@ -178,7 +178,7 @@ TEST_CASE("neither Escape nor the keys of a preview do anything in a session") {
     sitting.show(session::ReadyStep{1, 25, false});
     sitting.type("Escape Next Prior");
     for (int i = 0; i < 20; ++i)
-      CHECK_FALSE(sitting.window.attend(session::ReadyStep{1, 25, false}));
+      CHECK_FALSE(sitting.window.show_step(session::ReadyStep{1, 25, false}));
     CHECK_FALSE(sitting.window.end_reason());
   });
 }
@@ -190,7 +190,7 @@ TEST_CASE("a choice is still there after a pause") {
     sitting.type("4");
     sitting.show(session::PauseStep{});
     sitting.type("2 Return");
-    for (int i = 0; i < 20; ++i) CHECK_FALSE(sitting.window.attend(session::PauseStep{}));
+    for (int i = 0; i < 20; ++i) CHECK_FALSE(sitting.window.show_step(session::PauseStep{}));
     const auto reply = sitting.answer(answer_step(), "Return");
     REQUIRE(reply);
     CHECK(position_of(reply->answer) == 3);
@@ -207,16 +207,17 @@ TEST_CASE("while a plane is on the space bar stops the force and Enter ends the 
     CHECK(sitting.window.wait_until_shown(kPatience));
     std::this_thread::sleep_for(milliseconds(600));
     device::ServoControl servo;
-    sitting.window.exploring(servo);
-    CHECK_FALSE(servo.finish_asked());
+    sitting.window.while_exploring(servo);
+    CHECK_FALSE(servo.finish_requested());
     sitting.screen->type(stops ? "space" : "Return");
     const auto give_up = steady_clock::now() + kPatience;
-    while (!servo.comfort_stop_asked() && !servo.finish_asked() && steady_clock::now() < give_up) {
-      sitting.window.exploring(servo);
+    while (!servo.comfort_stop_requested() && !servo.finish_requested() &&
+           steady_clock::now() < give_up) {
+      sitting.window.while_exploring(servo);
       std::this_thread::sleep_for(milliseconds(1));
     }
-    CHECK(servo.comfort_stop_asked() == stops);
-    CHECK(servo.finish_asked() == !stops);
+    CHECK(servo.comfort_stop_requested() == stops);
+    CHECK(servo.finish_requested() == !stops);
   });
 }
 
@@ -231,8 +232,8 @@ TEST_CASE("a double press of the space bar to continue does not stop the force")
       space.at = begun + milliseconds(ms);
       sitting.window.inject(space);
       device::ServoControl servo;
-      sitting.window.exploring(servo);
-      return servo.comfort_stop_asked();
+      sitting.window.while_exploring(servo);
+      return servo.comfort_stop_requested();
     };
     space.at = begun;
     sitting.window.inject(space);
@@ -256,10 +257,10 @@ TEST_CASE(
     sitting.window.show_exploring(kPlane);
     sitting.window.close();
     device::ServoControl servo;
-    sitting.window.exploring(servo);
-    CHECK(servo.emergency_stop_asked());
+    sitting.window.while_exploring(servo);
+    CHECK(servo.emergency_stop_requested());
     CHECK(sitting.window.end_reason() == app::WindowEnd::closed);
-    CHECK_FALSE(sitting.window.attend(answer_step()));
+    CHECK_FALSE(sitting.window.show_step(answer_step()));
   });
 }
 
@@ -293,10 +294,10 @@ TEST_CASE("Enter does not answer before the surface was felt, and the screen say
     const auto press_enter = [&] {
       sitting.screen->type("Return");
       sitting.settle();
-      sitting.window.exploring(servo);
+      sitting.window.while_exploring(servo);
     };
     press_enter();
-    CHECK_FALSE(servo.finish_asked());
+    CHECK_FALSE(servo.finish_requested());
     CHECK(has_text());
     const auto feel = [&](int from, int to, double z_mm) {
       for (int tick = from; tick < to; ++tick) {
@@ -305,32 +306,32 @@ TEST_CASE("Enter does not answer before the surface was felt, and the screen say
         sample.position_mm = {0.1 * tick, 20.0, z_mm};
         sitting.window.feel(sample);
       }
-      sitting.window.exploring(servo);
+      sitting.window.while_exploring(servo);
     };
     feel(0, 2000, 3.1);  // above the plane
     feel(2000, 2500, -0.1);
     CHECK(has_text());
     press_enter();
-    CHECK_FALSE(servo.finish_asked());
+    CHECK_FALSE(servo.finish_requested());
     feel(2500, 2502, -0.1);  // half a second
     CHECK_FALSE(has_text());
-    CHECK_FALSE(servo.finish_asked());
+    CHECK_FALSE(servo.finish_requested());
     press_enter();
-    CHECK(servo.finish_asked());
+    CHECK(servo.finish_requested());
     // Going back to the same surface needs no more; the next surface does.
     sitting.show(answer_step(1));
     sitting.window.show_exploring(kPlane);
     std::this_thread::sleep_for(milliseconds(600));
     servo.clear_requests();
     press_enter();
-    CHECK(servo.finish_asked());
+    CHECK(servo.finish_requested());
     sitting.show(answer_step(1));
     sitting.show(session::ReadyStep{2, 25, false});
     sitting.window.show_exploring(kPlane);
     std::this_thread::sleep_for(milliseconds(600));
     servo.clear_requests();
     press_enter();
-    CHECK_FALSE(servo.finish_asked());
+    CHECK_FALSE(servo.finish_requested());
   });
 }
 
@@ -357,9 +358,9 @@ TEST_CASE("the exploring screen does not depend on what is felt, to the last byt
 
 app::ParticipantWindowOptions with_intervals() {
   app::ParticipantWindowOptions wanted = options();
-  wanted.ask = {.exploring = study::InContact{},
-                .planes = 2,
-                .question = study::Choose{"threshold_texture", {}}};
+  wanted.trial_question = {.exploring = study::TimedContact{},
+                           .planes = 2,
+                           .question = study::ChoiceQuestion{"threshold_texture", {}}};
   wanted.stiffness_n_per_mm = 0.4;
   wanted.interval_pause = milliseconds(300);
   wanted.min_touch = {.contact_s = 0.5, .path_mm = 25.0};
@@ -367,7 +368,7 @@ app::ParticipantWindowOptions with_intervals() {
 }
 
 session::IntervalStep interval_step(int interval) {
-  return {.trial = 1, .interval = interval, .of = 2};
+  return {.trial = 1, .interval = interval, .total = 2};
 }
 
 TEST_CASE("the announcement of a plane is shown for a moment, and ends by itself") {
@@ -384,7 +385,7 @@ TEST_CASE("the announcement of a plane is shown for a moment, and ends by itself
       CHECK(steady_clock::now() - begun >= milliseconds(300));
       sitting.window.show_exploring(kPlane);
     }
-    CHECK_FALSE(sitting.window.attend(answer_step()));
+    CHECK_FALSE(sitting.window.show_step(answer_step()));
     CHECK(cues.marks == 1929);
   });
 }
@@ -400,23 +401,23 @@ TEST_CASE("Enter does not end a plane of several, and the space bar stops") {
     device::ServoControl servo;
     sitting.screen->type("Return");
     sitting.settle();
-    for (int i = 0; i < 20; ++i) sitting.window.exploring(servo);
-    CHECK_FALSE(servo.finish_asked());
-    CHECK_FALSE(servo.comfort_stop_asked());
+    for (int i = 0; i < 20; ++i) sitting.window.while_exploring(servo);
+    CHECK_FALSE(servo.finish_requested());
+    CHECK_FALSE(servo.comfort_stop_requested());
     sitting.screen->type("space");
     sitting.settle();
-    sitting.window.exploring(servo);
-    CHECK(servo.comfort_stop_asked());
+    sitting.window.while_exploring(servo);
+    CHECK(servo.comfort_stop_requested());
     // A trial with one plane ends as ever.
-    CHECK_FALSE(sitting.window.attend(session::ReadyStep{2, 25, false}));
+    CHECK_FALSE(sitting.window.show_step(session::ReadyStep{2, 25, false}));
     sitting.window.show_exploring(kPlane);
     feel_texture(sitting.window, 0.9);
     std::this_thread::sleep_for(milliseconds(600));
     servo.clear_requests();
     sitting.screen->type("Return");
     sitting.settle();
-    sitting.window.exploring(servo);
-    CHECK(servo.finish_asked());
+    sitting.window.while_exploring(servo);
+    CHECK(servo.finish_requested());
   });
 }
 
@@ -436,23 +437,23 @@ TEST_CASE("a space bar between two planes stops the second as soon as it is on")
     const auto is_stopped = [&] {
       sitting.window.show_exploring(kPlane);
       device::ServoControl servo;
-      sitting.window.exploring(servo);
-      return servo.comfort_stop_asked();
+      sitting.window.while_exploring(servo);
+      return servo.comfort_stop_requested();
     };
     // Pressed twice to go on: the second press is forgiven.
     press_after(0);
     REQUIRE(sitting.reply_to(session::ReadyStep{1, 25, false}));
-    CHECK_FALSE(sitting.window.attend(interval_step(1)));
+    CHECK_FALSE(sitting.window.show_step(interval_step(1)));
     press_after(200);
-    CHECK_FALSE(sitting.window.attend(interval_step(1)));
+    CHECK_FALSE(sitting.window.show_step(interval_step(1)));
     CHECK_FALSE(is_stopped());
     // The next one is meant.
-    CHECK_FALSE(sitting.window.attend(interval_step(2)));
+    CHECK_FALSE(sitting.window.show_step(interval_step(2)));
     press_after(10'000);
-    CHECK(sitting.window.attend(interval_step(2)));
+    CHECK(sitting.window.show_step(interval_step(2)));
     CHECK(is_stopped());
     // It does not reach another trial.
-    CHECK_FALSE(sitting.window.attend(interval_step(1)));
+    CHECK_FALSE(sitting.window.show_step(interval_step(1)));
     CHECK_FALSE(is_stopped());
   });
 }
@@ -492,7 +493,7 @@ TEST_CASE("the screen of an interval depends on the hand alone, and so does the 
       sitting.window.show_exploring(kPlane);
       stroke(sitting.window, seconds, depth_mm, force_n);
       device::ServoControl servo;
-      sitting.window.exploring(servo);
+      sitting.window.while_exploring(servo);
       CHECK(sitting.window.wait_until_shown(kPatience));
       return sitting.window.picture();
     };
@@ -586,7 +587,7 @@ TEST_CASE("a window takes the keyboard back while a plane is on, and says that i
   room.run([&] {
     room.show(answer_step());
     room.settle();
-    CHECK(room.window.out_of_reach() == milliseconds{0});
+    CHECK(room.window.time_without_focus() == milliseconds{0});
     room.window.show_exploring(kPlane);
     const auto give_up = steady_clock::now() + kPatience;
     const auto waits = [&](const auto& done) {
@@ -598,9 +599,9 @@ TEST_CASE("a window takes the keyboard back while a plane is on, and says that i
     bool is_lost = false;
     waits([&] {
       if (!is_lost) room.screen->take_focus();
-      return is_lost = is_lost || room.window.take_out_of_reach();
+      return is_lost = is_lost || room.window.take_focus_loss();
     });
-    waits([&] { return room.window.out_of_reach() == milliseconds{0}; });
+    waits([&] { return room.window.time_without_focus() == milliseconds{0}; });
     CHECK_FALSE(room.window.end_reason());
   });
 }

@@ -28,7 +28,7 @@ class PreparedTextures {
     for (const engine::TextureField& field : fields_) views.push_back(field.view());
     const engine::StudyGains gains = engine::choose_gains(views, options_);
     for (std::size_t i = 0; i < views.size(); ++i) {
-      models_.emplace_back(views[i], options_, gains.of_field[i]);
+      models_.emplace_back(views[i], options_, gains.per_field[i]);
     }
   }
 

@@ -90,7 +90,7 @@ TEST_CASE("a preview of ratings shows a picture with the scales, and no answer")
     CHECK_FALSE(std::holds_alternative<session::FeedbackStep>(*screen.step));
     const auto* const answer = std::get_if<session::AnswerStep>(&*screen.step);
     if (answer == nullptr) continue;
-    CHECK(std::holds_alternative<study::Rate>(answer->question));
+    CHECK(std::holds_alternative<study::RatingQuestion>(answer->question));
     pictures.push_back(answer->picture);
   }
   // Of practice, a trial, and a trial whose time is up.
@@ -130,7 +130,7 @@ TEST_CASE("screens are drawn into files, one or all, each of them another pictur
   const fs::path all = drawer.folder.path() / "all";
   REQUIRE(drawer.preview({"--png", all.string(), "--window", "640x480", "--console"}).exit_code ==
           0);
-  CHECK(is_there(all / "console.png"));
+  CHECK(path_exists(all / "console.png"));
   std::set<Bytes> pictures;
   std::size_t files = 0;
   for (const auto& entry : fs::directory_iterator(all)) {
@@ -139,7 +139,7 @@ TEST_CASE("screens are drawn into files, one or all, each of them another pictur
   }
   CHECK(files > 25);
   CHECK(pictures.size() == files);
-  CHECK_FALSE(is_there(drawer.folder.path() / "config/study.pack"));
+  CHECK_FALSE(path_exists(drawer.folder.path() / "config/study.pack"));
 
   const std::vector<std::string> again = {"--screen", "answer", "--png", file};
   CHECK(drawer.preview(again).exit_code == 0);

@@ -27,9 +27,9 @@ study::Scale scale_of(int points) {
 }
 
 session::AnswerStep rated(const std::vector<int>& points) {
-  study::Rate rate{.title = "rate_title", .scales = {}};
+  study::RatingQuestion rate{.title = "rate_title", .scales = {}};
   for (const int count : points) rate.scales.push_back(scale_of(count));
-  return {.trial = 1, .of = 25, .question = rate, .picture = "bark"};
+  return {.trial = 1, .total = 25, .question = rate, .picture = "bark"};
 }
 
 /// A participant before the screen.
@@ -39,16 +39,16 @@ struct Rating : Drawn {
   /// \return the ratings, if the screen goes on
   std::optional<Values> enter() {
     const auto reply = press(app::Key::enter);
-    return reply ? std::optional(std::get<Rated>(reply->answer).values) : std::nullopt;
+    return reply ? std::optional(std::get<RatingAnswer>(reply->answer).values) : std::nullopt;
   }
   void press_with_shift(app::Key which) {
     app::InputEvent event = key(which);
     event.shift = true;
-    CHECK_FALSE(screen->take(event));
+    CHECK_FALSE(screen->handle(event));
     static_cast<void>(draw());
   }
   std::optional<session::StepReply> mouse(Kind kind, Vec2 position) {
-    auto reply = screen->take({.kind = kind, .position = position});
+    auto reply = screen->handle({.kind = kind, .position = position});
     static_cast<void>(draw());
     return reply;
   }
@@ -98,7 +98,7 @@ TEST_CASE("keys mark a line in its middle, then move by hundredths, or by tenths
     rating.press_with_shift(app::Key::left);
     app::InputEvent held = key(app::Key::left);
     held.kind = Kind::repeat;
-    CHECK_FALSE(rating.screen->take(held));
+    CHECK_FALSE(rating.screen->handle(held));
     CHECK(rating.enter() == Values{0.4});
   }
   SECTION("the ends") {
@@ -149,7 +149,7 @@ TEST_CASE("the mouse marks a line where it is pressed, and draws the mark to the
     CHECK_FALSE(rating.mouse(Kind::pressed, next));
     app::InputEvent last{.kind = Kind::released, .position = next};
     last.at = app::InputEvent::Time(std::chrono::seconds(9));
-    const auto reply = rating.screen->take(last);
+    const auto reply = rating.screen->handle(last);
     REQUIRE(reply);
     CHECK(ratings_of(reply->answer) == Values{0.5});
     CHECK(reply->at == last.at);
@@ -265,9 +265,11 @@ TEST_CASE("everything on the screen of ratings can be read, in all languages and
   CAPTURE(size.x, language, side_mm, text_scale, time_is_up);
   const Paper paper(size, text_scale, app::letters_in(all_texts(language)));
   Squares shelf(side_mm);
-  const app::Glass glass = {size.x > 2000.0 ? 0.16 : 0.27, side_mm < 100.0};
-  const app::ScreenContext context = {
-      .words = &words_in(language), .language = language, .shelf = &shelf, .glass = &glass};
+  const app::PhysicalScale physical_scale = {size.x > 2000.0 ? 0.16 : 0.27, side_mm < 100.0};
+  const app::ScreenContext context = {.words = &words_in(language),
+                                      .language = language,
+                                      .shelf = &shelf,
+                                      .physical_scale = &physical_scale};
   for (const std::vector<int>& points : scales_to_lay_out()) {
     CAPTURE(points.size());
     session::AnswerStep step = rated(points);
@@ -277,9 +279,9 @@ TEST_CASE("everything on the screen of ratings can be read, in all languages and
     const auto screen = app::screen_for(step, context, {});
     CHECK(faults_of(paper.draw(*screen)) == "");
     for (std::size_t i = 0; i < points.size(); ++i) {
-      CHECK_FALSE(screen->take(key(app::Key::right)));
+      CHECK_FALSE(screen->handle(key(app::Key::right)));
       CHECK(faults_of(paper.draw(*screen)) == "");
-      CHECK(screen->take(key(app::Key::enter)).has_value() == (i + 1 == points.size()));
+      CHECK(screen->handle(key(app::Key::enter)).has_value() == (i + 1 == points.size()));
     }
   }
 }
@@ -299,12 +301,12 @@ TEST_CASE("instructions and notices of ratings can be read, in all languages") {
   const session::SessionTexts texts = app::session_texts(study);
   const Paper paper({1280.0, 720.0}, text_scale, app::letters_in(all_texts(language)));
   Squares shelf(50.0);
-  const app::Glass glass = {0.27, true};
+  const app::PhysicalScale physical_scale = {0.27, true};
   const app::ScreenContext context = {.words = &words_in(language),
                                       .language = language,
                                       .shelf = &shelf,
-                                      .glass = &glass,
-                                      .ask = {.question = rated({0}).question}};
+                                      .physical_scale = &physical_scale,
+                                      .trial_question = {.question = rated({0}).question}};
   const std::vector<session::Step> steps = {
       session::InstructionStep{texts.instructions}, session::PracticeStep{1},
       session::NoticeStep{session::NoticeStep::What::practice_over}};
@@ -312,7 +314,7 @@ TEST_CASE("instructions and notices of ratings can be read, in all languages") {
     const auto screen = app::screen_for(step, context, {});
     while (!screen->is_done()) {
       CHECK(faults_of(paper.draw(*screen)) == "");
-      static_cast<void>(screen->take(key(app::Key::enter)));
+      static_cast<void>(screen->handle(key(app::Key::enter)));
     }
   }
   const app::Words& words = words_in(language);

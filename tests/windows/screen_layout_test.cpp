@@ -67,13 +67,13 @@ std::vector<session::Step> steps_of_a_session() {
           session::ReadyStep{1, 25, false},
           session::ReadyStep{3, 5, true},
           session::AnswerStep{.trial = 25,
-                              .of = 25,
+                              .total = 25,
                               .time_is_up = true,
                               .may_explore_again = true,
                               .confidence_levels = 9},
-          session::AnswerStep{.trial = 2, .of = 5, .practice = true},
+          session::AnswerStep{.trial = 2, .total = 5, .practice = true},
           session::AnswerStep{
-              .trial = 2, .of = 25, .time_is_up = true, .sight = study::Sight::blindfold},
+              .trial = 2, .total = 25, .time_is_up = true, .sight = study::Sight::blindfold},
           session::FeedbackStep{0, 1},
           session::FeedbackStep{1, 1},
           session::BreakStep{10, 25},
@@ -89,11 +89,11 @@ std::vector<session::Step> steps_of_a_session() {
 void check_all_pages(const Paper& paper, app::Screen& screen) {
   for (int page = 0; page < 12 && !screen.is_done(); ++page) {
     CHECK(faults_of(paper.draw(screen)) == "");
-    static_cast<void>(screen.take(key(app::Key::digit, 2)));
+    static_cast<void>(screen.handle(key(app::Key::digit, 2)));
     CHECK(faults_of(paper.draw(screen)) == "");
-    static_cast<void>(screen.take(key(app::Key::digit, 1)));
+    static_cast<void>(screen.handle(key(app::Key::digit, 1)));
     CHECK(faults_of(paper.draw(screen)) == "");
-    static_cast<void>(screen.take(key(app::Key::enter)));
+    static_cast<void>(screen.handle(key(app::Key::enter)));
   }
 }
 
@@ -132,13 +132,13 @@ TEST_CASE("everything on every screen can be read, in all languages and at all s
   const session::SessionTexts texts = app::session_texts(full_study(language));
   const app::Words& words = words_in(language);
   Squares shelf(side_mm);
-  const app::Glass glass = {size.x > 2000.0 ? 0.16 : 0.27, knows};
+  const app::PhysicalScale physical_scale = {size.x > 2000.0 ? 0.16 : 0.27, knows};
   for (const std::size_t count : {2U, 5U, 9U}) {
     const app::ScreenContext context = {.words = &words,
                                         .language = language,
                                         .mouse = count == 5U,
                                         .shelf = &shelf,
-                                        .glass = &glass};
+                                        .physical_scale = &physical_scale};
     const std::vector<std::string> labels(count, "corrugated cardboard");
     for (const session::Step& step : count == 5U ? own_steps(texts) : steps_of_a_session()) {
       CAPTURE(step.index(), count);
@@ -153,8 +153,8 @@ std::vector<session::Step> steps_with_intervals() {
   std::vector<session::Step> steps = {session::PracticeStep{1},
                                       session::ReadyStep{1, 60, false},
                                       session::ReadyStep{60, 60, false, true},
-                                      session::IntervalStep{.trial = 1, .interval = 1, .of = 2},
-                                      session::IntervalStep{.trial = 1, .interval = 3, .of = 3},
+                                      session::IntervalStep{.trial = 1, .interval = 1, .total = 2},
+                                      session::IntervalStep{.trial = 1, .interval = 3, .total = 3},
                                       session::IntervalStep{.trial = 1, .hand_off = true},
                                       session::FeedbackStep{0, 1},
                                       session::FeedbackStep{1, 1},
@@ -165,9 +165,9 @@ std::vector<session::Step> steps_with_intervals() {
                                "threshold_odd", "threshold_same"}) {
     for (const study::Sight sight : {study::Sight::curtain, study::Sight::blindfold}) {
       steps.push_back(session::AnswerStep{.trial = 2,
-                                          .of = 60,
+                                          .total = 60,
                                           .confidence_levels = 5,
-                                          .question = study::Choose{question, {}},
+                                          .question = study::ChoiceQuestion{question, {}},
                                           .sight = sight});
     }
   }
@@ -184,17 +184,17 @@ TEST_CASE("all screens of trials with several planes can be read, in all languag
   CAPTURE(size.x, language, text_scale, feedback, mouse);
   const Paper paper(size, text_scale, app::letters_in(all_texts(language)));
   Squares shelf(50.0);
-  const app::Glass glass = {0.27, true};
-  const study::Ask ask{.exploring = study::InContact{},
-                       .planes = 3,
-                       .question = study::Choose{"threshold_odd", {}},
-                       .feedback = feedback};
+  const app::PhysicalScale physical_scale = {0.27, true};
+  const study::TrialQuestion ask{.exploring = study::TimedContact{},
+                                 .planes = 3,
+                                 .question = study::ChoiceQuestion{"threshold_odd", {}},
+                                 .feedback = feedback};
   const app::ScreenContext context = {.words = &words_in(language),
                                       .language = language,
                                       .mouse = mouse,
                                       .shelf = &shelf,
-                                      .glass = &glass,
-                                      .ask = ask};
+                                      .physical_scale = &physical_scale,
+                                      .trial_question = ask};
   for (const session::Step& step : steps_with_intervals()) {
     for (const std::vector<std::string>& labels :
          {std::vector<std::string>{"first", "second", "third"},
@@ -217,9 +217,10 @@ TEST_CASE("all screens of trials with several planes can be read, in all languag
 TEST_CASE("with high contrast, no screen has the design's pale colours") {
   const Paper paper({1280.0, 720.0});
   Squares shelf(51.2);
-  const app::Glass glass = {0.27, true};
+  const app::PhysicalScale physical_scale = {0.27, true};
   const app::Words& words = words_in("en");
-  const app::ScreenContext context = {.words = &words, .shelf = &shelf, .glass = &glass};
+  const app::ScreenContext context = {
+      .words = &words, .shelf = &shelf, .physical_scale = &physical_scale};
   const auto uses = [&](app::Screen& screen, bool high_contrast, std::uint32_t colour) {
     static_cast<void>(paper.draw(screen, high_contrast));
     const auto& vertices = ImGui::GetBackgroundDrawList()->VtxBuffer;
@@ -238,27 +239,29 @@ TEST_CASE("with high contrast, no screen has the design's pale colours") {
 
 TEST_CASE("letters that are new to the fonts are reported, and are there when asked for") {
   Squares shelf(51.2);
-  const app::Glass glass;
+  const app::PhysicalScale physical_scale;
   const app::Words& words = words_in("ja");
-  const app::ScreenContext context = {.words = &words, .shelf = &shelf, .glass = &glass};
+  const app::ScreenContext context = {
+      .words = &words, .shelf = &shelf, .physical_scale = &physical_scale};
   const auto screen = app::screen_for(session::EndStep{}, context, {});
   std::set<char32_t> missing;
   {
     const Paper paper({1280.0, 720.0});
-    missing = paper.draw(*screen).missing();
+    missing = paper.draw(*screen).missing_letters();
   }
   CHECK(missing.contains(U'終'));
   CHECK_FALSE(missing.contains(U' '));
   const Paper paper({1280.0, 720.0}, 1.0, missing);
-  CHECK(paper.draw(*screen).missing().empty());
+  CHECK(paper.draw(*screen).missing_letters().empty());
 }
 
 TEST_CASE("a page shows its pictures beside the text, and bold words without their marks") {
   const Paper paper({1280.0, 720.0});
   Squares shelf(51.2);
-  const app::Glass glass;
+  const app::PhysicalScale physical_scale;
   const app::Words& words = words_in("en");
-  const app::ScreenContext context = {.words = &words, .shelf = &shelf, .glass = &glass};
+  const app::ScreenContext context = {
+      .words = &words, .shelf = &shelf, .physical_scale = &physical_scale};
   const auto width_of_body = [&](const std::string& page) {
     const auto screen = app::screen_for(session::InstructionStep{{page}}, context, {});
     const app::Canvas canvas = paper.draw(*screen);
@@ -281,10 +284,11 @@ TEST_CASE("pictures claim a scale only on a screen whose size is known") {
   Squares shelf(side_mm);
   for (const bool is_known : {true, false}) {
     CAPTURE(side_mm, is_known);
-    const app::Glass glass = {0.27, is_known};
-    app::AnswerScreen screen({.trial = 1, .of = 25},
-                             {.words = &words_in("en"), .shelf = &shelf, .glass = &glass},
-                             std::vector<std::string>(5, "x"));
+    const app::PhysicalScale physical_scale = {0.27, is_known};
+    app::AnswerScreen screen(
+        {.trial = 1, .total = 25},
+        {.words = &words_in("en"), .shelf = &shelf, .physical_scale = &physical_scale},
+        std::vector<std::string>(5, "x"));
     const app::Canvas canvas = paper.draw(screen);
     CHECK(shows(canvas, "10 mm of the surface"));
     CHECK(shows(canvas, "in true size") == (is_known && side_mm < 50.0));
@@ -299,13 +303,13 @@ TEST_CASE("the mouse's hint is there in practice too, above the bars") {
   const bool practice = GENERATE(true, false);
   const Paper paper(size);
   Squares shelf(50.0);
-  const app::Glass glass = {0.27, true};
+  const app::PhysicalScale physical_scale = {0.27, true};
   const app::ScreenContext context = {.words = &words_in(language),
                                       .language = language,
                                       .mouse = true,
                                       .shelf = &shelf,
-                                      .glass = &glass};
-  app::FeltNow felt;
+                                      .physical_scale = &physical_scale};
+  app::HandReadings felt;
   felt.force_n = 2.3F;  // too hard, which is said beside the bars
   device::PointerExchange pointer;
   const std::atomic<bool> pressed{false};
@@ -330,15 +334,17 @@ TEST_CASE("while one of several planes is on, the screen says which and how far 
   CAPTURE(language, size.x, mouse, practice, hand_off);
   const Paper paper(size, 1.0, app::letters_in(all_texts(language)));
   Squares shelf(50.0);
-  const app::Glass glass = {0.27, true};
-  const app::ScreenContext context = {
-      .words = &words_in(language), .mouse = mouse, .shelf = &shelf, .glass = &glass};
-  app::FeltNow felt;
+  const app::PhysicalScale physical_scale = {0.27, true};
+  const app::ScreenContext context = {.words = &words_in(language),
+                                      .mouse = mouse,
+                                      .shelf = &shelf,
+                                      .physical_scale = &physical_scale};
+  app::HandReadings felt;
   device::PointerExchange pointer;
   const std::atomic<bool> pressed{false};
   std::atomic<int> explored{0};
   const std::atomic<bool> has_lifted{GENERATE(true, false)};
-  const session::IntervalStep interval{.trial = 1, .interval = 2, .of = 3, .hand_off = hand_off};
+  const session::IntervalStep interval{.trial = 1, .interval = 2, .total = 3, .hand_off = hand_off};
   app::ExploringScreen screen({practice ? &felt : nullptr,
                                mouse ? &pointer : nullptr,
                                &pressed,
@@ -351,7 +357,7 @@ TEST_CASE("while one of several planes is on, the screen says which and how far 
   const app::Canvas canvas = paper.draw(screen);
   CHECK(faults_of(canvas) == "");
   CHECK(shows(canvas,
-              app::with_numbers(words_in(language).interval_of, {{"interval", 2}, {"of", 3}})));
+              app::fill_numbers(words_in(language).interval_of, {{"interval", 2}, {"of", 3}})));
   CHECK_FALSE(shows(canvas, words_in(language).exploring_mouse));
   const auto length_of_bar = [&] {
     static_cast<void>(paper.draw(screen));
@@ -388,28 +394,28 @@ TEST_CASE("a frame that is as large as a bank card gives the scale of the screen
   CHECK(faults_of(paper.draw(screen)) == "");
   for (const app::Key which :
        {app::Key::right, app::Key::right, app::Key::up, app::Key::left, app::Key::down}) {
-    CHECK_FALSE(screen.take(key(which)));
+    CHECK_FALSE(screen.handle(key(which)));
   }
   CHECK(screen.mm_per_unit() == Approx(85.6 / 321.0));
   app::InputEvent held = key(app::Key::up);
   held.kind = app::InputEvent::Kind::repeat;
-  for (int i = 0; i < 500; ++i) CHECK_FALSE(screen.take(held));
+  for (int i = 0; i < 500; ++i) CHECK_FALSE(screen.handle(held));
   CHECK(screen.mm_per_unit() == Approx(25.4 / 400.0).epsilon(1e-3));
-  CHECK(screen.take(key(app::Key::enter)));
+  CHECK(screen.handle(key(app::Key::enter)));
 }
 
 /// A question, and its answer by keys.
 struct Asked : Drawn {
-  explicit Asked(const session::AnswerStep& step = {.trial = 1, .of = 25},
+  explicit Asked(const session::AnswerStep& step = {.trial = 1, .total = 25},
                  const std::vector<std::string>& labels = std::vector<std::string>(5, "x"))
       : Drawn(step, "en", labels) {
     static_cast<void>(draw());
   }
 };
 
-const session::AnswerStep kPictures{.trial = 1, .of = 25};
+const session::AnswerStep kPictures{.trial = 1, .total = 25};
 const session::AnswerStep kWords{
-    .trial = 1, .of = 60, .question = study::Choose{"threshold_odd", {}}};
+    .trial = 1, .total = 60, .question = study::ChoiceQuestion{"threshold_odd", {}}};
 const std::vector<std::string> kThree = {"first", "second", "third"};
 
 TEST_CASE("an answer needs a choice that is there and Next, and can be changed once") {
@@ -465,18 +471,18 @@ TEST_CASE("the announcement of a plane ends by itself, not by a key") {
 }
 
 TEST_CASE("confidence is asked after the answer, whose time is when Next was pressed") {
-  Asked asked({.trial = 1, .of = 25, .confidence_levels = 4});
+  Asked asked({.trial = 1, .total = 25, .confidence_levels = 4});
   static_cast<void>(asked.press(app::Key::digit, 2));
   app::InputEvent next = key(app::Key::enter);
   next.at = app::InputEvent::Time(std::chrono::seconds(5));
-  CHECK_FALSE(asked.screen->take(next));
+  CHECK_FALSE(asked.screen->handle(next));
   static_cast<void>(asked.draw());
   CHECK_FALSE(asked.press(app::Key::enter));
   static_cast<void>(asked.press(app::Key::digit, 5));
   static_cast<void>(asked.press(app::Key::digit, 4));
   app::InputEvent last = key(app::Key::enter);
   last.at = app::InputEvent::Time(std::chrono::seconds(9));
-  const auto reply = asked.screen->take(last);
+  const auto reply = asked.screen->handle(last);
   REQUIRE(reply);
   CHECK(position_of(reply->answer) == 1);
   CHECK(reply->confidence == 4);
@@ -492,10 +498,10 @@ TEST_CASE("a picture and Next can be clicked; releasing the button elsewhere is 
     REQUIRE(found != targets.end());
     app::InputEvent event{.kind = app::InputEvent::Kind::pressed,
                           .position = {found->box.x + 5.0, found->box.y + 5.0}};
-    static_cast<void>(asked.screen->take(event));
+    static_cast<void>(asked.screen->handle(event));
     event.kind = app::InputEvent::Kind::released;
     event.position = event.position + slip;
-    return asked.screen->take(event);
+    return asked.screen->handle(event);
   };
   CHECK_FALSE(click(4, {0.0, 0.0}));
   CHECK_FALSE(click(app::kNextTarget, {0.0, -300.0}));
@@ -506,7 +512,7 @@ TEST_CASE("a picture and Next can be clicked; releasing the button elsewhere is 
 
 TEST_CASE("feeling again is offered only if the step allows it") {
   Asked without;
-  Asked with({.trial = 1, .of = 25, .may_explore_again = true});
+  Asked with({.trial = 1, .total = 25, .may_explore_again = true});
   CHECK(without.draw().targets().size() == 5);
   CHECK(with.draw().targets().size() == 6);
   static_cast<void>(with.press(app::Key::back_tab));
@@ -571,7 +577,7 @@ TEST_CASE("Next keeps its position when other buttons appear and disappear") {
     return found->box;
   };
   Asked without;
-  Asked with({.trial = 1, .of = 25, .may_explore_again = true});
+  Asked with({.trial = 1, .total = 25, .may_explore_again = true});
   static_cast<void>(without.press(app::Key::digit, 1));
   static_cast<void>(with.press(app::Key::digit, 1));
   const app::Box next = next_of(without.draw());
@@ -614,10 +620,10 @@ TEST_CASE("pictures have their true size if there is room, and are never larger"
   const std::vector<Vec2> sizes(5, {200.0, 200.0});
   const app::PictureGrid roomy =
       app::lay_out_pictures(sizes, {0.0, 0.0, 1200.0, 400.0}, 20.0, 40.0);
-  CHECK(roomy.shown == 1.0);
+  CHECK(roomy.scale == 1.0);
   CHECK(roomy.pictures[4].width == Approx(200.0));
   const app::PictureGrid tight = app::lay_out_pictures(sizes, {0.0, 0.0, 600.0, 400.0}, 20.0, 40.0);
-  CHECK(tight.shown == Approx(0.75));
+  CHECK(tight.scale == Approx(0.75));
   for (const app::Box& picture : tight.pictures) {
     CHECK(lies_inside(picture, {0.0, 0.0, 600.0, 400.0}));
     CHECK(picture.width == Approx(150.0));

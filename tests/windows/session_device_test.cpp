@@ -16,7 +16,7 @@ device::SchedulingObtained ordinary() {
 }
 
 TEST_CASE("a session with force and without real time is refused with the two lines that mend it") {
-  const auto enter = [] { (void)app::lateness_to_record(felt(), ordinary(), false); };
+  const auto enter = [] { (void)app::lateness_entry(felt(), ordinary(), false); };
   CHECK_THROWS_AS(enter(), DeviceError);
   CHECK_THROWS_WITH(enter(), holds_text("rtprio 99\"") && holds_text("memlock unlimited\"") &&
                                  holds_text("/etc/security/limits.d/touchtrial.conf") &&
@@ -24,7 +24,7 @@ TEST_CASE("a session with force and without real time is refused with the two li
 }
 
 TEST_CASE("a late session that is wanted all the same is recorded by a code of the program's") {
-  const auto late = app::lateness_to_record(felt(), ordinary(), true);
+  const auto late = app::lateness_entry(felt(), ordinary(), true);
   REQUIRE(late);
   CHECK(late->kind == session::ExperimenterRequest::Kind::deviation);
   CHECK(late->code == "no-real-time");
@@ -35,13 +35,13 @@ TEST_CASE("a late session that is wanted all the same is recorded by a code of t
 TEST_CASE("a punctual servo, a mouse and a simulated hand need no permission") {
   device::SchedulingObtained punctual;
   punctual.policy = device::SchedulingPolicy::fifo;
-  CHECK_FALSE(app::lateness_to_record(felt(), punctual, false));
+  CHECK_FALSE(app::lateness_entry(felt(), punctual, false));
   device::DeviceInfo mouse = felt();
   mouse.visual = true;
-  CHECK_FALSE(app::lateness_to_record(mouse, ordinary(), false));
+  CHECK_FALSE(app::lateness_entry(mouse, ordinary(), false));
   device::DeviceInfo simulated = felt();
   simulated.simulated = true;
-  CHECK_FALSE(app::lateness_to_record(simulated, ordinary(), false));
+  CHECK_FALSE(app::lateness_entry(simulated, ordinary(), false));
 }
 
 }  // namespace

@@ -74,9 +74,9 @@ TEST_CASE("masking noise has the requested level and mean 0") {
 
 TEST_CASE("masking noise does not clip at the highest level, and nothing is louder") {
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
-    CHECK(peak_of(app::masking_noise(app::kHighestMaskingDbfs, seed)) < 0.8F);
+    CHECK(peak_of(app::masking_noise(app::kMaxMaskingDbfs, seed)) < 0.8F);
   }
-  CHECK(app::masking_noise(0.0, 1) == app::masking_noise(app::kHighestMaskingDbfs, 1));
+  CHECK(app::masking_noise(0.0, 1) == app::masking_noise(app::kMaxMaskingDbfs, 1));
 }
 
 TEST_CASE("masking noise follows from its seed") {
@@ -97,7 +97,7 @@ TEST_CASE("noise begins and ends in ramps without a step") {
   CHECK(peak_of(rendered(mixer, 500)) == 0.0F);
   float before = 0.0F;
   for (const bool on : {true, false}) {
-    mixer.mask(on);
+    mixer.set_masking(on);
     const std::vector<float> samples = rendered(mixer, 4800);
     for (const float sample : samples) {
       // 0.5 in 50 ms, and rounding.
@@ -113,7 +113,7 @@ TEST_CASE("tones begin and end without a step, and stop by themselves") {
                              app::Cue::stopped, app::Cue::first_begins, app::Cue::second_begins,
                              app::Cue::third_begins, app::Cue::interval_over}) {
     app::SoundMixer mixer(kRateHz, {});
-    mixer.tone(cue);
+    mixer.play(cue);
     const std::vector<float> samples = rendered(mixer, 48000);
     CHECK(peak_of(samples) > 0.05F);
     CHECK(samples.front() == 0.0F);
@@ -130,18 +130,18 @@ TEST_CASE("tones begin and end without a step, and stop by themselves") {
 
 TEST_CASE("a tone that still sounds is not restarted, and can be played again later") {
   app::SoundMixer mixer(kRateHz, {});
-  mixer.tone(app::Cue::too_hard);
+  mixer.play(app::Cue::too_hard);
   std::ignore = rendered(mixer, 6000);
-  mixer.tone(app::Cue::too_hard);
+  mixer.play(app::Cue::too_hard);
   const std::vector<float> rest = rendered(mixer, 12000);
   CHECK(peak_of({rest.begin() + 6000, rest.end()}) == 0.0F);
-  mixer.tone(app::Cue::too_hard);
+  mixer.play(app::Cue::too_hard);
   CHECK(peak_of(rendered(mixer, 6000)) > 0.05F);
 }
 
 std::vector<float> samples_of(app::Cue cue) {
   app::SoundMixer mixer(kRateHz, {});
-  mixer.tone(cue);
+  mixer.play(cue);
   return rendered(mixer, 48000);
 }
 
@@ -197,7 +197,7 @@ TEST_CASE("the marks of intervals stand out from the masking noise") {
     return db_of(2.0 * density_at(noise, kFirst, kLast) * (kLast - kFirst) / (count * count));
   };
   const std::vector<float> usual = app::masking_noise(study::MaskingPlan{}.level_dbfs, 3);
-  const std::vector<float> loudest = app::masking_noise(app::kHighestMaskingDbfs, 3);
+  const std::vector<float> loudest = app::masking_noise(app::kMaxMaskingDbfs, 3);
   for (const app::Cue mark : {app::Cue::first_begins, app::Cue::second_begins,
                               app::Cue::third_begins, app::Cue::interval_over}) {
     const double level = level_of(mark);
@@ -214,9 +214,9 @@ TEST_CASE("tones that sound together over the loudest noise stay within full sca
   const Cues together = GENERATE(Cues{app::Cue::third_begins, app::Cue::too_hard},
                                  Cues{app::Cue::plane_on, app::Cue::plane_off, app::Cue::too_hard});
   app::SoundMixer mixer(kRateHz, app::masking_noise(0.0, 5));
-  mixer.mask(true);
+  mixer.set_masking(true);
   for (int i = 0; i < 20; ++i) {
-    for (const app::Cue cue : together) mixer.tone(cue);
+    for (const app::Cue cue : together) mixer.play(cue);
     CHECK(peak_of(rendered(mixer, 36000)) < 1.0F);
   }
 }
@@ -227,10 +227,10 @@ TEST_CASE("rendering sound allocates and locks nothing") {
   std::ignore = take_realtime_offences();
   {
     const device::RealtimeRegion region;
-    mixer.mask(true);
-    mixer.tone(app::Cue::plane_on);
+    mixer.set_masking(true);
+    mixer.play(app::Cue::plane_on);
     mixer.render(samples);
-    mixer.tone(app::Cue::too_hard);
+    mixer.play(app::Cue::too_hard);
     mixer.render(samples);
   }
   CHECK(take_realtime_offences() == RealtimeOffences{});
@@ -251,19 +251,19 @@ class AlsaConfiguration {
 TEST_CASE("without a sound card a session is silent, says why, and records it once") {
   const AlsaConfiguration nothing("pcm.!default { type hw card 99 }\n");
   app::SessionSound sound(study::MaskingPlan{}, 1);
-  sound.tone(app::Cue::plane_on);
-  CHECK(sound.trouble().find("sound: ") == 0);
-  const auto record = sound.to_record();
+  sound.play(app::Cue::plane_on);
+  CHECK(sound.failure_reason().find("sound: ") == 0);
+  const auto record = sound.next_record_entry();
   REQUIRE(record);
   CHECK(record->kind == session::ExperimenterRequest::Kind::deviation);
   CHECK(record->code == "no-masking-noise");
-  CHECK_FALSE(sound.to_record());
+  CHECK_FALSE(sound.next_record_entry());
 }
 
 TEST_CASE("a study without masking noise records nothing about it") {
   const AlsaConfiguration nothing("pcm.!default { type hw card 99 }\n");
   app::SessionSound sound({.wanted = false}, 1);
-  CHECK_FALSE(sound.to_record());
+  CHECK_FALSE(sound.next_record_entry());
 }
 
 /// The samples that the sound card has received so far, from the file.
@@ -282,19 +282,19 @@ TEST_CASE("the mixed samples arrive at the sound card unchanged") {
                                   file.string() + "\"\n format \"raw\" }\n");
   constexpr std::int64_t kCount = 24000;
   app::SoundMixer mixer(kRateHz, app::masking_noise(-30.0, 2));
-  mixer.mask(true);
-  mixer.tone(app::Cue::plane_on);
+  mixer.set_masking(true);
+  mixer.play(app::Cue::plane_on);
   {
     const app::SoundCard card(mixer);
-    CHECK(card.plays());
+    CHECK(card.is_playing());
     const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(5);
-    while (mixer.rendered() < 4 * kCount && std::chrono::steady_clock::now() < give_up) {
+    while (mixer.rendered_samples() < 4 * kCount && std::chrono::steady_clock::now() < give_up) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
   }
   app::SoundMixer twin(kRateHz, app::masking_noise(-30.0, 2));
-  twin.mask(true);
-  twin.tone(app::Cue::plane_on);
+  twin.set_masking(true);
+  twin.play(app::Cue::plane_on);
   const std::vector<float> played = samples_in(file);
   const std::vector<float> expected = rendered(twin, kCount);
   // The sound card's buffer begins with silence.

@@ -88,9 +88,10 @@ TEST_CASE("the window uses every text of the screens, and no other") {
 }
 
 TEST_CASE("values take the places of the words in braces, wherever these are") {
-  CHECK(app::with_numbers("{of} ... {trial} of {of}", {{"trial", 7}, {"of", 25}}) ==
+  CHECK(app::fill_numbers("{of} ... {trial} of {of}", {{"trial", 7}, {"of", 25}}) ==
         "25 ... 7 of 25");
-  CHECK(app::filled("It was: {label}", {{"label", "{label} {of}"}}) == "It was: {label} {of}");
+  CHECK(app::fill_placeholders("It was: {label}", {{"label", "{label} {of}"}}) ==
+        "It was: {label} {of}");
 }
 
 TEST_CASE("instructions of every study hold its numbers and no word in braces") {
@@ -192,7 +193,7 @@ TEST_CASE("instructions of trials with several planes hold their numbers and the
     CAPTURE(language);
     const app::Words words = app::words_of(study::language_of(code).texts);
     for (const study::Study& study : every_kind_with_intervals(language)) {
-      const study::Ask ask = study::ask_of(study);
+      const study::TrialQuestion ask = study::trial_question_of(study);
       const session::SessionTexts texts = app::session_texts(study);
       CHECK(texts.instructions.size() == 7);
       const std::string text = all_of(texts.instructions);

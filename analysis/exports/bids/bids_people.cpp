@@ -29,19 +29,21 @@ struct OptionalColumn {
 };
 
 constexpr std::array<OptionalColumn, 5> kOptionalColumns{{
-    {"age_band", [](const BidsPerson& of) { return or_nothing(of.age_band); }},
-    {"sex", [](const BidsPerson& of) { return or_nothing(of.sex); }},
+    {"age_band", [](const BidsPerson& person) { return optional_cell(person.age_band); }},
+    {"sex", [](const BidsPerson& person) { return optional_cell(person.sex); }},
     {"handedness",
-     [](const BidsPerson& of) -> DataCell {
-       if (!of.handedness_score) return std::monostate{};
-       return handedness_of(*of.handedness_score);
+     [](const BidsPerson& person) -> DataCell {
+       if (!person.handedness_score) return std::monostate{};
+       return handedness_of(*person.handedness_score);
      }},
-    {"handedness_score", [](const BidsPerson& of) { return or_nothing(of.handedness_score); }},
-    {"consent_version", [](const BidsPerson& of) { return or_nothing(of.consent_version); }},
+    {"handedness_score",
+     [](const BidsPerson& person) { return optional_cell(person.handedness_score); }},
+    {"consent_version",
+     [](const BidsPerson& person) { return optional_cell(person.consent_version); }},
 }};
 
 /// Adds the column unless all its values are missing.
-/// \param people  one entry for each row of the table
+/// \param people  one entry per row of the table
 void add_if_known(DataTable& table, const OptionalColumn& column,
                   const std::vector<BidsPerson>& people) {
   std::vector<DataCell> values;
@@ -87,52 +89,48 @@ void append_cells(std::vector<DataCell>& row, std::vector<DataCell> cells) {
              std::make_move_iterator(cells.end()));
 }
 
-/// The last session of each participant.
 std::vector<const BidsSession*> last_sessions(const std::vector<BidsSession>& sessions) {
-  std::vector<const BidsSession*> standing;
+  std::vector<const BidsSession*> participant_sessions;
   for (const BidsSession& session : sessions) {
-    const auto same = std::find_if(standing.begin(), standing.end(), [&](const BidsSession* other) {
-      return other->subject == session.subject;
-    });
-    if (same == standing.end()) {
-      standing.push_back(&session);
+    const auto entry =
+        std::find_if(participant_sessions.begin(), participant_sessions.end(),
+                     [&](const BidsSession* other) { return other->subject == session.subject; });
+    if (entry == participant_sessions.end()) {
+      participant_sessions.push_back(&session);
     } else {
-      *same = &session;
+      *entry = &session;
     }
   }
-  return standing;
+  return participant_sessions;
 }
 
-/// Adds the group of each participant, if there are groups; it is missing where it is not shown.
-void add_group(DataTable& table, const std::vector<const BidsSession*>& standing,
+/// Adds each participant's group if the study has groups; hidden groups are missing.
+void add_group(DataTable& table, const std::vector<const BidsSession*>& participant_sessions,
                const Collection& collection) {
   if (collection.prescription.groups.empty()) return;
   table.columns.emplace_back("group");
-  for (std::size_t i = 0; i < standing.size(); ++i) {
-    const auto record = std::ranges::find(collection.sessions, standing[i]->row.session,
-                                          [](const SessionRecord& of) { return of.row.session; });
+  for (std::size_t i = 0; i < participant_sessions.size(); ++i) {
+    const auto record =
+        std::ranges::find(collection.sessions, participant_sessions[i]->row.session,
+                          [](const SessionRecord& session) { return session.row.session; });
     table.rows[i].emplace_back(record->group);
   }
 }
 
-/// The last answer that a participant gave to each question, over all sessions.
-BidsPerson answers_of_participant(const std::string& subject,
-                                  const std::vector<BidsSession>& sessions,
-                                  const std::map<int, Demographics>& by_session) {
-  BidsPerson said;
+/// The participant's last answer to each question, over all sessions.
+BidsPerson last_answers(const std::string& subject, const std::vector<BidsSession>& sessions,
+                        const std::map<int, Demographics>& by_session) {
+  BidsPerson person;
   for (const BidsSession& session : sessions) {
     const auto found = by_session.find(session.row.session);
-    if (session.subject != subject || found == by_session.end()) continue;
-    if (found->second.age_band) said.age_band = found->second.age_band;
-    if (found->second.sex) said.sex = found->second.sex;
-    if (found->second.handedness_score) said.handedness_score = found->second.handedness_score;
+    if (session.subject == subject && found != by_session.end()) person.update(found->second);
   }
-  return said;
+  return person;
 }
 
 /// A name of lower-case letters, digits and underscores, as BIDS requires for columns.
-/// \param taken  names that are in use
-std::string snake_case(const std::string& name, const std::vector<std::string>& taken) {
+/// \param used_names  names in use; a number makes the new name different
+std::string snake_case(const std::string& name, const std::vector<std::string>& used_names) {
   std::string snake;
   for (const char c : name) {
     const bool is_capital = c >= 'A' && c <= 'Z';
@@ -145,9 +143,10 @@ std::string snake_case(const std::string& name, const std::vector<std::string>& 
   }
   while (!snake.empty() && snake.back() == '_') snake.pop_back();
   if (snake.empty() || (snake[0] >= '0' && snake[0] <= '9')) snake = "q_" + snake;
-  std::string free = snake;
-  for (int n = 2; std::ranges::count(taken, free) > 0; ++n) free = snake + "_" + std::to_string(n);
-  return free;
+  std::string unique_name = snake;
+  for (int n = 2; std::ranges::count(used_names, unique_name) > 0; ++n)
+    unique_name = snake + "_" + std::to_string(n);
+  return unique_name;
 }
 
 /// The day of a session, if it is recorded.
@@ -162,9 +161,9 @@ std::optional<std::chrono::sys_days> day_of(const std::string& opened_utc) {
 void label_sessions(std::vector<BidsSession>& sessions) {
   std::map<std::string, int> count;
   for (const BidsSession& session : sessions) ++count[session.subject];
-  const bool several =
+  const bool has_labels =
       std::any_of(count.begin(), count.end(), [](const auto& one) { return one.second > 1; });
-  if (!several) return;
+  if (!has_labels) return;
   std::map<std::string, int> number;
   for (BidsSession& session : sessions) {
     session.label = "ses-" + std::to_string(++number[session.subject]);
@@ -224,7 +223,7 @@ DataTable bids_participants(const DatasetSource& source, const std::vector<BidsS
     std::vector<DataCell>& row = table.rows.emplace_back();
     row = {session->subject, session->row.participant};
     if (!has_sessions) append_cells(row, session_cells(*session));
-    people.push_back(answers_of_participant(session->subject, sessions, by_session));
+    people.push_back(last_answers(session->subject, sessions, by_session));
     for (const record::PersonalRecord& one : consents) {
       if (one.participant != session->row.participant) continue;
       people.back().consent_version = one.consent_version;
@@ -241,41 +240,45 @@ DataTable bids_participants(const DatasetSource& source, const std::vector<BidsS
 
 std::vector<BidsQuestionnaire> bids_questionnaires(const DatasetSource& study,
                                                    const std::vector<BidsSession>& sessions,
-                                                   Typed typed) {
+                                                   FreeText free_text) {
   const Outcomes& outcomes = *study.outcomes;
   std::map<std::string, std::map<int, std::map<std::string, DataCell>>> answers;
-  std::map<std::string, std::vector<QuestionAnswer>> questions;  // one of each
+  std::map<std::string, std::vector<QuestionAnswer>> questions;  // one answer per question
   for (const QuestionAnswer& one : outcomes.answers) {
-    if (typed == Typed::left_out && may_name_somebody(one)) continue;
+    if (free_text == FreeText::left_out && may_identify_person(one)) continue;
     answers[one.questionnaire][one.session][one.question] =
         one.number ? DataCell(*one.number) : DataCell(one.words);
-    std::vector<QuestionAnswer>& known = questions[one.questionnaire];
-    if (std::ranges::find(known, one.question, &QuestionAnswer::question) == known.end()) {
-      known.push_back(one);
+    std::vector<QuestionAnswer>& distinct_questions = questions[one.questionnaire];
+    if (std::ranges::find(distinct_questions, one.question, &QuestionAnswer::question) ==
+        distinct_questions.end()) {
+      distinct_questions.push_back(one);
     }
   }
-  std::set<std::string> labels;  // of the sessions, or one empty label
+  std::set<std::string> labels;  // session labels; one empty label if sessions have none
   for (const BidsSession& session : sessions) labels.insert(session.label);
   std::vector<BidsQuestionnaire> all;
-  for (auto& [name, of] : questions) {
-    std::ranges::sort(of, {}, &QuestionAnswer::question);
+  for (auto& [name, tool_questions] : questions) {
+    std::ranges::sort(tool_questions, {}, &QuestionAnswer::question);
     for (const std::string& label : labels) {
-      BidsQuestionnaire one;
-      one.tool = snake_case(name, {});
-      one.name = one.tool + (label.empty() ? "" : "_session_" + label.substr(label.find('-') + 1));
-      one.table.columns = {"participant_id"};
-      for (const QuestionAnswer& question : of) {
-        one.table.columns.push_back(snake_case(question.question, one.table.columns));
-        one.questions.push_back(question_of(outcomes.asked, question));
+      BidsQuestionnaire questionnaire;
+      questionnaire.tool = snake_case(name, {});
+      questionnaire.name = questionnaire.tool +
+                           (label.empty() ? "" : "_session_" + label.substr(label.find('-') + 1));
+      questionnaire.table.columns = {"participant_id"};
+      for (const QuestionAnswer& question : tool_questions) {
+        questionnaire.table.columns.push_back(
+            snake_case(question.question, questionnaire.table.columns));
+        questionnaire.questions.push_back(question_of(outcomes.questionnaires, question));
       }
       for (const BidsSession& session : sessions) {
-        const auto said = answers[name].find(session.row.session);
-        if (session.label != label || said == answers[name].end()) continue;
-        std::vector<DataCell>& row = one.table.rows.emplace_back();
+        const auto session_answers = answers[name].find(session.row.session);
+        if (session.label != label || session_answers == answers[name].end()) continue;
+        std::vector<DataCell>& row = questionnaire.table.rows.emplace_back();
         row = {session.subject};
-        for (const QuestionAnswer& question : of) row.push_back(said->second[question.question]);
+        for (const QuestionAnswer& question : tool_questions)
+          row.push_back(session_answers->second[question.question]);
       }
-      if (!one.table.rows.empty()) all.push_back(std::move(one));
+      if (!questionnaire.table.rows.empty()) all.push_back(std::move(questionnaire));
     }
   }
   return all;

@@ -1,6 +1,7 @@
 #include "analysis/exports/bids/bids_sidecars_json.hpp"
 
 #include "analysis/exports/bids/bids_motion.hpp"
+#include "analysis/exports/column_meanings.hpp"
 #include "analysis/outcomes/collection.hpp"
 #include "analysis/report/json_figures.hpp"
 #include "core/version.hpp"
@@ -18,18 +19,18 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-void put_if_given(Json& object, const char* key, const std::string& value) {
+void put_if_nonempty(Json& object, const char* key, const std::string& value) {
   if (!value.empty()) object[key] = value;
 }
 
-/// The exporting program; the README names the recording one.
+/// The exporting program. The README names the recording program.
 Json generated_by() {
   return Json::array({{{"Name", "Touchtrial"},
                        {"Version", program_version()},
                        {"Description", "touchtrial export --format bids"}}});
 }
 
-std::string stamped(const std::string& text, bool simulated) {
+std::string with_stamp(const std::string& text, bool simulated) {
   return simulated ? text + " (SIMULATED)" : text;
 }
 
@@ -37,10 +38,11 @@ void put_columns(Json& object, const std::vector<std::string>& columns) {
   for (const std::string& column : columns) {
     if (column == "participant_id" || column == "session_id") continue;
     const ColumnMeaning meaning = meaning_of(column);
-    Json described{{"Description", meaning.description}};
-    put_if_given(described, "Units", meaning.unit);
-    for (const auto& [value, means] : meaning.levels) described["Levels"][value] = means;
-    object[column] = described;
+    Json column_object{{"Description", meaning.description}};
+    put_if_nonempty(column_object, "Units", meaning.unit);
+    for (const auto& [value, value_meaning] : meaning.levels)
+      column_object["Levels"][value] = value_meaning;
+    object[column] = column_object;
   }
 }
 
@@ -66,14 +68,14 @@ std::string task_description(const DatasetSource& study) {
 
 /// The study's own instructions, or the name of the program's instructions that it uses.
 std::string instructions(const study::Study& study) {
-  const auto own = study.session.instructions.find(study.session.language);
-  if (own == study.session.instructions.end()) {
+  const auto custom = study.session.instructions.find(study.session.language);
+  if (custom == study.session.instructions.end()) {
     const std::string draft = study::draft_notice(study.session.language);
     return "Touchtrial's default instructions, in the language \"" + study.session.language + "\"" +
            (study.session.texts.contains(study.session.language) ? ", some replaced" : "") +
            (draft.empty() ? "" : "; " + draft);
   }
-  return fmt::format("{}", fmt::join(own->second, "\n\n"));
+  return fmt::format("{}", fmt::join(custom->second, "\n\n"));
 }
 
 Json columns_object(const std::vector<std::string>& columns, bool simulated) {
@@ -94,7 +96,7 @@ Json task_object(const DatasetSource& study, const DatasetOptions& options) {
   const record::StudyCommitment& commitment = study.store.commitment();
   Json object{{"TaskName", commitment.study}, {"TaskDescription", task_description(study)}};
   if (study.key != nullptr) object["Instructions"] = instructions(study.key->study);
-  put_if_given(object, "InstitutionName", options.institution);
+  put_if_nonempty(object, "InstitutionName", options.institution);
   return object;
 }
 
@@ -113,10 +115,10 @@ std::map<std::string_view, int> channel_counts() {
 
 std::string dataset_description_json(const DatasetSource& study, const DatasetOptions& options) {
   const record::StudyCommitment& commitment = study.store.commitment();
-  Json object{{"Name", stamped(commitment.study, commitment.simulated)},
+  Json object{{"Name", with_stamp(commitment.study, commitment.simulated)},
               {"BIDSVersion", kBidsVersion},
               {"DatasetType", "raw"}};
-  put_if_given(object, "License", options.license);
+  put_if_nonempty(object, "License", options.license);
   if (!options.authors.empty()) object["Authors"] = options.authors;
   if (study.key != nullptr && !study.key->study.session.ethics_number.empty()) {
     object["EthicsApprovals"] = {study.key->study.session.ethics_number};
@@ -130,7 +132,7 @@ std::string dataset_description_json(const DatasetSource& study, const DatasetOp
 
 std::string derivative_description_json(const DatasetSource& study) {
   const record::StudyCommitment& commitment = study.store.commitment();
-  Json object{{"Name", stamped("Report of " + commitment.study, commitment.simulated)},
+  Json object{{"Name", with_stamp("Report of " + commitment.study, commitment.simulated)},
               {"BIDSVersion", kBidsVersion},
               {"DatasetType", "derivative"},
               {"GeneratedBy", generated_by()}};
@@ -157,21 +159,21 @@ std::string task_json(const DatasetSource& study, const DatasetOptions& options,
   return json_text(object);
 }
 
-// Every recording has all fields of the specification and no others, because the npm validator
-// checks each file separately and rejects other fields.
+// Contains exactly the fields of the specification, because the npm validator checks each file
+// separately and rejects others.
 std::string motion_json(const DatasetSource& study, const DatasetOptions& options,
                         const BidsSession& session, const record::TraceBody& body) {
   Json object = task_object(study, options);
   object["SamplingFrequency"] = body.rate_hz;
   object["SamplingFrequencyEffective"] = body.servo ? body.servo->rate_hz : body.rate_hz;
-  object["TrackingSystemName"] = stamped(
+  object["TrackingSystemName"] = with_stamp(
       "Handle of the force-feedback device, driver " + session.row.device, session.row.simulated);
   for (const SessionRecord& record : study.outcomes->collection.sessions) {
     if (record.row.session != session.row.session) continue;
-    put_if_given(object, "DeviceSerialNumber", record.device_serial);
+    put_if_nonempty(object, "DeviceSerialNumber", record.device_serial);
     if (!record.station) continue;
-    put_if_given(object, "ManufacturersModelName", record.station->model);
-    put_if_given(object, "SoftwareVersions", record.station->firmware);
+    put_if_nonempty(object, "ManufacturersModelName", record.station->model);
+    put_if_nonempty(object, "SoftwareVersions", record.station->firmware);
   }
   const std::map<std::string_view, int> counts = channel_counts();
   for (const char* type :
@@ -200,23 +202,23 @@ std::string channels_json() {
 
 std::string questionnaire_json(const BidsQuestionnaire& questionnaire, const std::string& language,
                                bool simulated) {
-  const std::string what =
+  const std::string description =
       questionnaire.tool == "handedness"
           ? "Edinburgh Handedness Inventory, short form (Veale 2014), and the "
             "hand that held the pen"
           : "Questions of the study, questionnaire \"" + questionnaire.tool + "\"";
-  Json object{{"MeasurementToolMetadata", {{"Description", what}}}};
+  Json object{{"MeasurementToolMetadata", {{"Description", description}}}};
   put_stamp(object, simulated);
   const std::vector<std::string>& columns = questionnaire.table.columns;
-  const std::size_t before = columns.size() - questionnaire.questions.size();
+  const std::size_t first = columns.size() - questionnaire.questions.size();
   for (std::size_t i = 0; i < questionnaire.questions.size(); ++i) {
     const study::Question* const question = questionnaire.questions[i];
-    Json described{{"Description", "Answer to the question " + columns[before + i]}};
-    if (question != nullptr) described["Description"] = in_language(question->text, language);
+    Json question_object{{"Description", "Answer to the question " + columns[first + i]}};
+    if (question != nullptr) question_object["Description"] = in_language(question->text, language);
     for (std::size_t k = 0; question != nullptr && k < question->options.size(); ++k) {
-      described["Levels"][std::to_string(k)] = in_language(question->options[k], language);
+      question_object["Levels"][std::to_string(k)] = in_language(question->options[k], language);
     }
-    object[columns[before + i]] = described;
+    object[columns[first + i]] = question_object;
   }
   return json_text(object);
 }

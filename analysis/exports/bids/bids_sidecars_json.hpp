@@ -37,7 +37,7 @@ inline constexpr const char* kBidsVersion = "1.11.1";
 
 /// *_motion.json of one run: the task, the rate, and the recorded device.
 /// \param study  unblinded
-/// \param body  of the trial's `trace-stored`, opened
+/// \param body  of the trial's opened `trace-stored` event
 [[nodiscard]] std::string motion_json(const DatasetSource& study, const DatasetOptions& options,
                                       const BidsSession& session, const record::TraceBody& body);
 

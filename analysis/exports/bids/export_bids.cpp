@@ -27,39 +27,41 @@ namespace {
 using Files = std::vector<ExportFile>;
 
 std::string bids_readme(const DatasetSource& study, const DatasetOptions& options) {
-  std::string text = study.store.commitment().study + "\n\n" + about_study(study);
+  std::string text = study.store.commitment().study + "\n\n" + study_readme(study);
   text += fmt::format(
-      "One *_beh.tsv a session, one row a trial, {}; task-*_beh.json describes the columns. Labels "
+      "Each *_beh.tsv has a session's trials, one row per trial, {}; task-*_beh.json describes the "
+      "columns. Labels "
       "of participants are their ids with Zd for a hyphen, Zu for an underscore, Zp for a plus "
       "sign and ZZ for Z; participants.tsv has both.\n",
       study.outcomes != nullptr ? "in the order of presentation" : "by number");
   if (options.traces) {
     text +=
-        "*_motion.tsv hold the stylus' position and the force sent while a plane could be felt: a "
-        "run is a trial, *_channels.tsv names the columns, and the *_events.tsv beside them count "
-        "from the run's first sample. *_scans.tsv give the time of that sample, with shifted "
-        "dates.\n";
+        "*_motion.tsv contain the stylus's position and the force sent while a plane could be "
+        "felt. "
+        "Each run is a trial; *_channels.tsv names the columns; times in the *_events.tsv beside "
+        "them start at the run's first sample. *_scans.tsv give the time of that sample, with "
+        "shifted dates.\n";
   }
   if (study.outcomes != nullptr) {
     text +=
         "beh/*_events.tsv list what happened besides trials, such as interruptions and pauses; "
         "phenotype/ has answers to questions";
-    text += options.typed == Typed::shown ? ".\n" : ", without free text.\n";
+    text += options.free_text == FreeText::shown ? ".\n" : ", without free text.\n";
   }
   if (options.stimuli)
-    text += "stimuli/ holds the images from which the textures were extracted.\n";
+    text += "stimuli/ contains the images from which the textures were extracted.\n";
   if (!options.database.empty()) {
-    text += "sourcedata/ holds the study's database; its key is not part of the dataset.\n";
+    text += "sourcedata/ contains the study's database; its key is not part of the dataset.\n";
   }
-  return text + "derivatives/touchtrial holds the program's own report.\n";
+  return text + "derivatives/touchtrial contains the program's report.\n";
 }
 
-/// The name of an image below stimuli/: the numbers of its class and of the image, from 1, with the
-/// letters and digits of the class between them, for example "01-bark-01.png".
+/// The name of an image in stimuli/: the number of its class, the class's letters and digits, and
+/// the number of the image, for example "01-bark-01.png".
 std::string stimulus_name(const study::Study& study, int class_index, int exemplar) {
-  const study::StudyClass& of = study.classes.at(class_index);
-  return fmt::format("{:02}-{}-{:02}{}", class_index + 1, plain_label(of.label), exemplar + 1,
-                     of.images.at(exemplar).extension().string());
+  const study::StudyClass& stimulus_class = study.classes.at(class_index);
+  return fmt::format("{:02}-{}-{:02}{}", class_index + 1, plain_label(stimulus_class.label),
+                     exemplar + 1, stimulus_class.images.at(exemplar).extension().string());
 }
 
 /// Copies of every image.
@@ -69,7 +71,7 @@ Files stimulus_files(const study::Study& study) {
   for (int i = 0; i < static_cast<int>(study.classes.size()); ++i) {
     for (int k = 0; k < static_cast<int>(study.classes[i].images.size()); ++k) {
       const std::filesystem::path image = study.folder / study.classes[i].images[k];
-      if (!is_there(image)) {
+      if (!path_exists(image)) {
         throw FileError(one_line(image.string()) +
                         ": the study's image is missing; restore it, or leave out --with-stimuli");
       }
@@ -82,7 +84,7 @@ Files stimulus_files(const study::Study& study) {
   return files;
 }
 
-/// The name that BIDS gives to a column, or its own name.
+/// A column's BIDS name if there is one, otherwise its own name.
 std::string bids_name(std::string_view column) {
   if (column == "class") return "trial_type";
   if (column == "reaction_time_s") return "response_time";
@@ -96,18 +98,17 @@ bool is_shown(const TrialColumn& column, bool unblinded) {
 
 DataCell stimulus_file(const TrialView& trial) {
   if (!trial.outcome->has_stimulus) return std::monostate{};
-  const study::StimulusIndex& shown = trial.outcome->stimulus;
-  return stimulus_name(trial.study->design, shown.class_index, shown.exemplar);
+  const study::StimulusIndex& index = trial.outcome->stimulus;
+  return stimulus_name(trial.study->design, index.class_index, index.exemplar);
 }
 
-/// The data that rows may show: trials with their outcomes, or before unblinding the unencrypted
-/// rows.
+/// The trials with their outcomes, or before unblinding the unencrypted rows.
 std::vector<TrialView> views_of(const DatasetSource& study,
-                                const std::vector<record::TrialRow>& in_clear) {
-  static const std::string kNobody;
+                                const std::vector<record::TrialRow>& unencrypted) {
+  static const std::string kNoParticipant;
   const bool simulated = study.store.commitment().simulated;
   std::vector<TrialView> views;
-  for (const record::TrialRow& row : in_clear) views.push_back({kNobody, row, simulated});
+  for (const record::TrialRow& row : unencrypted) views.push_back({kNoParticipant, row, simulated});
   if (study.outcomes == nullptr) return views;
   std::vector<const TrialOutcome*> trials;
   for (const TrialOutcome& trial : study.outcomes->trials) trials.push_back(&trial);
@@ -115,21 +116,21 @@ std::vector<TrialView> views_of(const DatasetSource& study,
     return std::pair(trial->row.session, trial->row.presented_at);
   });
   for (const TrialOutcome* trial : trials) {
-    views.push_back({kNobody, trial->row, simulated, study.outcomes, trial});
+    views.push_back({kNoParticipant, trial->row, simulated, study.outcomes, trial});
   }
   return views;
 }
 
-/// The trials of each session in the order of presentation (before unblinding: of their numbers),
-/// unscored trials included. The columns are those of trials.csv under the names of BIDS. A session
-/// without trials has an empty table.
+/// Tables of each session's scored and unscored trials, in the order of presentation (before
+/// unblinding, by number). The columns of trials.csv have their BIDS names here. A session without
+/// trials has an empty table.
 struct BidsTrials {
   std::vector<std::string> columns;
   std::map<int, DataTable> by_session;
 };
 
-/// \param options  whether the dataset includes the images and recordings, so that stim_file and
-///   motion_file can name them
+/// \param options  stim_file and motion_file exist only if the dataset includes images and
+///   recordings
 BidsTrials bids_trials(const DatasetSource& study, const DatasetOptions& options,
                        const std::vector<BidsSession>& sessions, const std::string& task) {
   const bool unblinded = study.outcomes != nullptr;
@@ -145,9 +146,9 @@ BidsTrials bids_trials(const DatasetSource& study, const DatasetOptions& options
     by_number[session.row.session] = &session;
     trials.by_session[session.row.session].columns = trials.columns;
   }
-  const std::vector<record::TrialRow> in_clear =
+  const std::vector<record::TrialRow> unencrypted =
       unblinded ? std::vector<record::TrialRow>() : study.store.trials();
-  for (const TrialView& trial : views_of(study, in_clear)) {
+  for (const TrialView& trial : views_of(study, unencrypted)) {
     const auto table = trials.by_session.find(trial.row.session);
     if (table == trials.by_session.end()) continue;
     std::vector<DataCell>& row = table->second.rows.emplace_back();
@@ -163,9 +164,9 @@ BidsTrials bids_trials(const DatasetSource& study, const DatasetOptions& options
   return trials;
 }
 
-void append(Files& files, Files more) {
-  files.insert(files.end(), std::make_move_iterator(more.begin()),
-               std::make_move_iterator(more.end()));
+void append(Files& files, Files added) {
+  files.insert(files.end(), std::make_move_iterator(added.begin()),
+               std::make_move_iterator(added.end()));
 }
 
 void require_unblinded(const DatasetSource& study, const DatasetOptions& options) {
@@ -183,9 +184,9 @@ void add_people(Files& files, const DatasetSource& study, const DatasetOptions& 
   const DataTable people = bids_participants(study, sessions, collection, options.consents);
   files.push_back(text_file("participants.tsv", tsv_text(people)));
   files.push_back(text_file("participants.json", columns_json(people.columns, simulated)));
-  std::set<std::string> done;
+  std::set<std::string> written_subjects;
   for (const BidsSession& session : sessions) {
-    if (session.label.empty() || !done.insert(session.subject).second) continue;
+    if (session.label.empty() || !written_subjects.insert(session.subject).second) continue;
     const DataTable table = bids_sessions_of(session.subject, sessions, collection);
     const std::string name = session.subject + "/" + session.subject + "_sessions";
     files.push_back(text_file(name + ".tsv", tsv_text(table)));
@@ -221,7 +222,7 @@ std::vector<DataCell> mark_cells(const InstrumentMark& mark,
   return row;
 }
 
-/// Adds questionnaires below phenotype/, and the incidents of sessions.
+/// Adds questionnaires in phenotype/, and the incidents of sessions.
 void add_questionnaires_and_incidents(Files& files, const DatasetSource& study,
                                       const DatasetOptions& options,
                                       const std::vector<BidsSession>& sessions,
@@ -229,26 +230,29 @@ void add_questionnaires_and_incidents(Files& files, const DatasetSource& study,
   if (study.outcomes == nullptr || sessions.empty()) return;
   const bool simulated = study.store.commitment().simulated;
   const std::string& language = study.outcomes->design.session.language;
-  for (const BidsQuestionnaire& one : bids_questionnaires(study, sessions, options.typed)) {
-    files.push_back(text_file("phenotype/" + one.name + ".tsv", tsv_text(one.table)));
+  for (const BidsQuestionnaire& questionnaire :
+       bids_questionnaires(study, sessions, options.free_text)) {
     files.push_back(
-        text_file("phenotype/" + one.name + ".json", questionnaire_json(one, language, simulated)));
+        text_file("phenotype/" + questionnaire.name + ".tsv", tsv_text(questionnaire.table)));
+    files.push_back(text_file("phenotype/" + questionnaire.name + ".json",
+                              questionnaire_json(questionnaire, language, simulated)));
   }
   std::vector<std::string> columns{"onset", "duration",     "incident",    "trial",
                                    "code",  "safety_fault", "device_fault"};
   const bool has_marks = !study.outcomes->marks.empty();
   if (has_marks) columns.insert(columns.end(), {"value", "lsl_time"});
-  if (options.typed == Typed::shown) columns.emplace_back("text");
+  if (options.free_text == FreeText::shown) columns.emplace_back("text");
   bool has_events = false;
   for (const BidsSession& session : sessions) {
     DataTable table{columns, {}};
-    for (const Incident& one : study.outcomes->incidents) {
-      if (one.session != session.row.session || !one.at) continue;
-      table.rows.push_back({*one.at, std::monostate{}, std::string(record::name_of(one.kind)),
-                            one.trial ? DataCell(std::int64_t{*one.trial}) : DataCell(), one.code,
-                            one.safety_fault, one.device_fault});
+    for (const Incident& incident : study.outcomes->incidents) {
+      if (incident.session != session.row.session || !incident.at) continue;
+      table.rows.push_back({*incident.at, std::monostate{},
+                            std::string(record::name_of(incident.kind)),
+                            incident.trial ? DataCell(std::int64_t{*incident.trial}) : DataCell(),
+                            incident.code, incident.safety_fault, incident.device_fault});
       if (has_marks) table.rows.back().resize(table.rows.back().size() + 2);
-      if (options.typed == Typed::shown) table.rows.back().emplace_back(one.text);
+      if (options.free_text == FreeText::shown) table.rows.back().emplace_back(incident.text);
     }
     for (const InstrumentMark& mark : study.outcomes->marks) {
       if (mark.session == session.row.session) table.rows.push_back(mark_cells(mark, columns));
@@ -262,54 +266,53 @@ void add_questionnaires_and_incidents(Files& files, const DatasetSource& study,
                   tsv_text(table)));
     has_events = true;
   }
-  // One file describes the events of all datatypes, because BIDS allows only one per level for a
-  // run.
-  std::vector<std::string> described;
-  if (has_events) described = columns;
+  // One file describes the events of all datatypes, because BIDS allows only one per run and level.
+  std::vector<std::string> event_columns;
+  if (has_events) event_columns = columns;
   if (options.traces) {
     for (const std::string& column : motion_event_columns()) {
-      if (std::ranges::count(described, column) == 0) described.push_back(column);
+      if (std::ranges::count(event_columns, column) == 0) event_columns.push_back(column);
     }
   }
-  if (described.empty()) return;
-  files.push_back(text_file("task-" + task + "_events.json", events_json(study, described)));
+  if (event_columns.empty()) return;
+  files.push_back(text_file("task-" + task + "_events.json", events_json(study, event_columns)));
 }
 
-void add_report(Files& files, const DatasetSource& study, Typed typed) {
+void add_report(Files& files, const DatasetSource& study, FreeText free_text) {
   const std::string folder = "derivatives/touchtrial/";
   files.push_back(
       text_file(folder + "dataset_description.json", derivative_description_json(study)));
   files.push_back(text_file(folder + ".bidsignore", "results.json\nquality.json\n"));
   files.push_back(text_file(folder + (study.outcomes != nullptr ? "results.json" : "quality.json"),
-                            report_in_dataset(study, typed)));
+                            report_in_dataset(study, free_text)));
 }
 
-/// Reports the number of written files, from one thread at a time.
+/// Reports the number of written files; thread-safe.
 class Progress {
  public:
-  Progress(std::function<void(int, int)> report_progress, int of)
-      : report_progress_(std::move(report_progress)), of_(of) {}
+  Progress(std::function<void(int, int)> report_progress, int total)
+      : report_progress_(std::move(report_progress)), total_(total) {}
 
-  void one_more() {
+  void count_file() {
     const std::lock_guard lock(mutex_);
-    report_progress_(++done_, of_);
+    report_progress_(++done_, total_);
   }
 
  private:
   std::mutex mutex_;
   std::function<void(int, int)> report_progress_;
-  int of_;
+  int total_;
   int done_ = 0;
 };
 
-void make_progress(Files& files, const DatasetOptions& options) {
+void report_progress_of(Files& files, const DatasetOptions& options) {
   if (!options.progress) return;
   const auto progress =
       std::make_shared<Progress>(options.progress, static_cast<int>(files.size()));
   for (ExportFile& file : files) {
     file.write = [write = std::move(file.write), progress](const std::filesystem::path& path) {
       write(path);
-      progress->one_more();
+      progress->count_file();
     };
   }
 }
@@ -330,14 +333,14 @@ std::vector<std::filesystem::path> export_bids(const DatasetSource& study,
   add_questionnaires_and_incidents(files, study, options, sessions, task);
   if (options.stimuli) append(files, stimulus_files(study.key->study));
   if (options.traces) append(files, motion_files(study, options, sessions, task));
-  add_report(files, study, options.typed);
+  add_report(files, study, options.free_text);
   if (!options.database.empty()) {
     files.push_back({"sourcedata/" + options.database.filename().string(),
                      [from = options.database](const std::filesystem::path& path) {
                        record::copy_database(from, path);
                      }});
   }
-  make_progress(files, options);
+  report_progress_of(files, options);
   return write_export(folder, {commitment.study, commitment.study_id, "bids"}, files);
 }
 

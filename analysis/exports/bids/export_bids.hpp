@@ -9,11 +9,11 @@
 
 namespace touchtrial::analysis {
 
-/// Before unblinding, the trials contain no more than those of the CSV export.
+/// Before unblinding, trials contain no more data than in the CSV export.
 /// \return the files, in the order written
 /// \throws UsageError if traces or stimuli are requested before unblinding
-/// \throws FileError if the folder or a file cannot be written, the folder holds other files, or an
-///   image of the study is missing
+/// \throws FileError if the folder or a file cannot be written, the folder contains other files, or
+///   an image of the study is missing
 std::vector<std::filesystem::path> export_bids(const DatasetSource& study,
                                                const DatasetOptions& options,
                                                const std::filesystem::path& folder);

@@ -23,11 +23,11 @@ extern char** environ;
 namespace touchtrial::analysis {
 namespace {
 
-/// A nameless temporary file that disappears when it is closed. Unlike a pipe it never blocks, and
-/// writing to it raises no signal when the reading program ends early.
+/// An unnamed temporary file. Unlike a pipe it never blocks, and writing to it raises no signal
+/// when the reading program exits early.
 class ScratchFile {
  public:
-  // Not std::tmpfile, which does not ask TMPDIR for the folder.
+  // Not std::tmpfile, which ignores TMPDIR.
   ScratchFile() {
     std::error_code error;
     const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
@@ -47,7 +47,7 @@ class ScratchFile {
     const bool written =
         std::fwrite(content.data(), 1, content.size(), file_.get()) == content.size();
     if (!written || std::fflush(file_.get()) != 0) {
-      throw FileError("temporary folder: is full; make room or set TMPDIR");
+      throw FileError("temporary folder: cannot be written (no space); make room or set TMPDIR");
     }
     std::rewind(file_.get());
   }
@@ -70,7 +70,7 @@ class ScratchFile {
   std::unique_ptr<std::FILE, Close> file_;
 };
 
-/// Standard input, output and error of a program.
+/// Redirects standard input, output and error of a program.
 class Streams {
  public:
   Streams(const ScratchFile& in, const ScratchFile& out, const ScratchFile& err) {
@@ -89,7 +89,6 @@ class Streams {
   posix_spawn_file_actions_t actions_{};
 };
 
-/// The exit status of a program, from waitpid.
 int wait_for(pid_t child) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0) {
@@ -100,11 +99,11 @@ int wait_for(pid_t child) {
 
 constexpr std::array<int, 2> kMinVersion = {5, 2};
 
-/// "5.0" of "gnuplot 5.0 patchlevel 5" if that is too old; empty otherwise.
-std::string version_if_old(const std::string& said) {
-  const std::size_t begin = said.find_first_of("0123456789");
+/// "5.0" of "gnuplot 5.0 patchlevel 5" if that is too old_version; empty otherwise.
+std::string outdated_version(const std::string& output) {
+  const std::size_t begin = output.find_first_of("0123456789");
   if (begin == std::string::npos) return "";
-  const std::string version = said.substr(begin, said.find(' ', begin) - begin);
+  const std::string version = output.substr(begin, output.find(' ', begin) - begin);
   const std::size_t dot = std::min(version.find('.'), version.size() - 1);
   const auto major = number_in<int>(version.substr(0, dot));
   const auto minor = number_in<int>(version.substr(dot + 1));
@@ -112,12 +111,12 @@ std::string version_if_old(const std::string& said) {
   return std::array<int, 2>{*major, *minor} < kMinVersion ? version : "";
 }
 
-/// The last line of gnuplot's error message; the others echo the script.
-std::string gist_of(const std::string& complaint) {
-  const std::size_t last = complaint.find_last_not_of(" \n");
+/// The last line of an error message; the other lines echo the script.
+std::string last_line(const std::string& message) {
+  const std::size_t last = message.find_last_not_of(" \n");
   if (last == std::string::npos) return "without a message";
-  const std::size_t line = complaint.rfind('\n', last);
-  return one_line(complaint.substr(line == std::string::npos ? 0 : line + 1, last - line));
+  const std::size_t line = message.rfind('\n', last);
+  return one_line(message.substr(line == std::string::npos ? 0 : line + 1, last - line));
 }
 
 }  // namespace
@@ -132,7 +131,7 @@ struct GnuplotProcess::Run {
 };
 
 GnuplotProcess::GnuplotProcess(std::string argument, std::string_view script)
-    : run_(std::make_unique<Run>(script)), asks_version_(argument == "--version") {
+    : run_(std::make_unique<Run>(script)), is_version_query_(argument == "--version") {
   std::string name = "gnuplot";
   std::string defaults = "-d";
   std::array<char*, 4> arguments = {name.data(), defaults.data(), argument.data(), nullptr};
@@ -145,7 +144,7 @@ GnuplotProcess::GnuplotProcess(std::string argument, std::string_view script)
     throw Error(failed == ENOENT
                     ? "gnuplot: is not installed; install gnuplot-nox"
                     : "gnuplot: cannot be started (" + std::generic_category().message(failed) +
-                          "); see that `gnuplot --version` works");
+                          "); check that `gnuplot --version` works");
   }
   run_->child = child;
 }
@@ -159,12 +158,12 @@ GnuplotProcess::GnuplotProcess(GnuplotProcess&&) noexcept = default;
 std::string GnuplotProcess::result() {
   const int status = run_->child == 0 ? 0 : wait_for(std::exchange(run_->child, 0));
   if (status != 0 && WIFSIGNALED(status)) {
-    throw Error(std::string("gnuplot: was ended (") + ::strsignal(WTERMSIG(status)) +
-                "); see that memory is free, and try again");
+    throw Error(std::string("gnuplot: was killed (") + ::strsignal(WTERMSIG(status)) +
+                "); free memory and try again");
   }
   if (status != 0) {
-    throw Error("gnuplot: failed (" + gist_of(run_->err.content()) + ")" +
-                (asks_version_ ? "; install gnuplot-nox anew" : gnuplot_remedy()));
+    throw Error("gnuplot: failed (" + last_line(run_->err.content()) + ")" +
+                (is_version_query_ ? "; reinstall gnuplot-nox" : gnuplot_remedy()));
   }
   return run_->out.content();
 }
@@ -174,10 +173,11 @@ void require_gnuplot() {
 }
 
 std::string gnuplot_remedy() {
-  const std::string old = version_if_old(GnuplotProcess("--version", "").result());
-  if (!old.empty()) return "; it is version " + old + ", and 5.2 or later is needed";
-  return "; see that the temporary folder has room (TMPDIR names another), and that gnuplot draws "
-         "SVG, PDF and PNG by itself, as that of gnuplot-nox does";
+  const std::string old_version = outdated_version(GnuplotProcess("--version", "").result());
+  if (!old_version.empty())
+    return "; it is version " + old_version + ", and 5.2 or later is needed";
+  return "; check that the temporary folder has room (TMPDIR selects another), and that gnuplot "
+         "can draw SVG, PDF and PNG, as that of gnuplot-nox can";
 }
 
 std::string gnuplot_string(const std::string& text) {

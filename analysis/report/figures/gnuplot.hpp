@@ -1,4 +1,4 @@
-/// \file Running gnuplot, which must be installed only if a figure is wanted.
+/// \file Runs gnuplot, which is needed only for figures.
 #pragma once
 
 #include <memory>
@@ -7,42 +7,41 @@
 
 namespace touchtrial::analysis {
 
-/// One run of gnuplot. It starts on construction; several may run at the same time. gnuplot starts
-/// from its defaults, whatever the user's own settings are.
+/// One run of gnuplot. It starts on construction; several may run at the same time. User settings
+/// of gnuplot are ignored.
 class GnuplotProcess {
  public:
-  /// \param argument  of the command line; may be empty
+  /// \param argument  on the command line; may be empty
   /// \param script  its standard input
   /// \throws Error if gnuplot cannot be started
   /// \throws FileError if temporary files cannot be made
   GnuplotProcess(std::string argument, std::string_view script);
-  /// Waits until it exits.
+  /// Waits until gnuplot exits.
   ~GnuplotProcess();
   GnuplotProcess(GnuplotProcess&&) noexcept;
   GnuplotProcess& operator=(GnuplotProcess&&) = delete;
 
-  /// Waits until it exits.
-  /// \return what it printed
+  /// Waits until gnuplot exits.
+  /// \return its output
   /// \throws Error if gnuplot failed
   [[nodiscard]] std::string result();
 
  private:
   struct Run;
   std::unique_ptr<Run> run_;
-  bool asks_version_;
+  bool is_version_query_;
 };
 
 /// Call before a long computation that ends in a figure.
 /// \throws Error, with the remedy, if gnuplot is not installed or does not start
 void require_gnuplot();
 
-/// The end of a message that gnuplot drew no picture or not the wanted one: what may help, by the
-/// version that it says it has. Begins with "; ".
+/// The remedy at the end of a message that drawing failed; depends on gnuplot's version and begins
+/// with "; ".
 /// \throws Error as require_gnuplot
 [[nodiscard]] std::string gnuplot_remedy();
 
-/// A text as a gnuplot string: on one line, in quotes. Whether gnuplot interprets mark-up is up to
-/// the script ("noenhanced").
+/// A text as a gnuplot string: on one line, in quotes. Scripts disable mark-up by "noenhanced".
 [[nodiscard]] std::string gnuplot_string(const std::string& text);
 
 }  // namespace touchtrial::analysis

@@ -10,24 +10,24 @@ namespace touchtrial::analysis {
 /// The pen of a dashed line.
 inline constexpr const char* kDashes = "dt (6, 5)";
 
-/// A layer: data before the plot, commands, and a part of the plot.
+/// The script of a layer.
 struct Drawing {
-  std::string data;
-  std::string commands;
-  std::string plot;  ///< empty: there is nothing to plot
+  std::string data;      ///< before the plot
+  std::string commands;  ///< before the plot
+  std::string plot;      ///< part of the plot command; may be empty
 };
 
 /// \param name  of the data, unique in the script
 [[nodiscard]] Drawing drawing_of(const std::string& name, const Layer& layer);
 
-/// gnuplot's number.
+/// gnuplot's number of a glyph.
 [[nodiscard]] int point_type(Glyph glyph) noexcept;
-/// Six digits, or "NaN".
+/// A number with six significant digits, or "NaN".
 [[nodiscard]] std::string number_text(double value);
 /// Sets a label.
-/// \param at  gnuplot's "at .." and what follows; never from the user
-[[nodiscard]] std::string text_at(const std::string& text, const std::string& at);
-/// A pale rectangle.
+/// \param placement  position and options in gnuplot's syntax; never user text
+[[nodiscard]] std::string text_at(const std::string& text, const std::string& placement);
+/// Draws a pale rectangle.
 /// \param from,to  corners as gnuplot coordinates
 [[nodiscard]] std::string pale_field(const std::string& from, const std::string& to,
                                      const std::string& colour);

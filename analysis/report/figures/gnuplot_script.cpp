@@ -13,7 +13,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-constexpr double kPixelsOfCm = 96.0 / 2.54;  ///< as in style sheets
+constexpr double kPixelsPerCm = 96.0 / 2.54;  ///< as in style sheets
 constexpr double kText_pt = 8.0;
 constexpr double kText_px = kText_pt * 96.0 / 72.0;
 constexpr const char* kStampColour = "#b3261e";
@@ -25,11 +25,11 @@ unset grid
 set multiplot
 )";
 
-/// Coordinates of the sheet.
+/// Converts cm from the top left corner to gnuplot coordinates.
 class Sheet {
  public:
   Sheet(double width_cm, double height_cm) : width_cm_(width_cm), height_cm_(height_cm) {}
-  [[nodiscard]] std::string at(double x_cm, double y_cm) const {
+  [[nodiscard]] std::string position(double x_cm, double y_cm) const {
     return fmt::format("screen {:.4f}, screen {:.4f}", x(x_cm), y(y_cm));
   }
   [[nodiscard]] double x(double cm) const { return cm / width_cm_; }
@@ -44,7 +44,7 @@ std::string limit(const std::optional<double>& end) {
   return end ? number_text(*end) : "*";
 }
 
-/// "1, 2, 5, 10", as far as they lie within the range.
+/// "1, 2, 5, 10": the ticks within the range.
 std::string log_ticks(double low, double high) {
   std::string ticks;
   for (double decade = std::pow(10.0, std::floor(std::log10(low))); decade <= high;
@@ -85,10 +85,10 @@ std::string axis_script(const char* name, const Axis& axis) {
   return script + fmt::format("set {}tics autofreq format '%g'\n", name);
 }
 
-/// The names along axes, and the labels beyond them.
+/// The names along axes, and the labels of named axes.
 std::string names_script(const Sheet& sheet, const Panel& panel, const PlacedPanel& placed) {
   std::string script;
-  const NamesBelow& below = placed.below;
+  const NamesBelow& below = placed.x_names;
   for (std::size_t i = 0; i < below.names.size(); ++i) {
     script +=
         text_at(below.names[i], fmt::format("first {}, graph 0 {}", i + 1,
@@ -100,13 +100,14 @@ std::string names_script(const Sheet& sheet, const Panel& panel, const PlacedPan
                       fmt::format("graph 0, first {} right offset -0.9, 0", i + 1));
   }
   if (!panel.x.names.empty()) {
-    script += text_at(panel.x.label, sheet.at(0.5 * (placed.left_cm + placed.right_cm),
-                                              placed.bottom_cm + placed.below.room_cm + 0.4) +
-                                         " center");
+    script +=
+        text_at(panel.x.label, sheet.position(0.5 * (placed.left_cm + placed.right_cm),
+                                              placed.bottom_cm + placed.x_names.room_cm + 0.4) +
+                                   " center");
   }
   if (!panel.y.names.empty()) {
-    script += text_at(panel.y.label, sheet.at(placed.left_cm - placed.beside_cm - 0.2,
-                                              0.5 * (placed.top_cm + placed.bottom_cm)) +
+    script += text_at(panel.y.label, sheet.position(placed.left_cm - placed.tick_labels_cm - 0.2,
+                                                    0.5 * (placed.top_cm + placed.bottom_cm)) +
                                          " center rotate by 90");
   }
   return script;
@@ -124,13 +125,13 @@ std::string scale_script(const Sheet& sheet, const Panel& panel, const PlacedPan
       "set palette defined ({})\nset cbrange [0:{:.3g}]\nset cblabel {} noenhanced offset -0.6, "
       "0\nset format cb '%g'\nset colorbox user origin screen {:.4f}, screen {:.4f} size screen "
       "{:.4f}, screen {:.4f} noborder\n",
-      stops, panel.strongest > 0.0 ? panel.strongest : 1.0, gnuplot_string(panel.colour_scale),
+      stops, panel.scale_max > 0.0 ? panel.scale_max : 1.0, gnuplot_string(panel.colour_scale),
       sheet.x(placed.right_cm + 0.2), sheet.y(placed.bottom_cm), width,
       sheet.y(placed.top_cm) - sheet.y(placed.bottom_cm));
 }
 
 std::string panel_script(const Sheet& sheet, const Panel& panel, const PlacedPanel& placed,
-                         std::size_t at) {
+                         std::size_t index) {
   const int border = (panel.x.hidden ? 0 : 1) + (panel.y.hidden ? 0 : 2);
   std::string script = fmt::format(
       "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset tmargin at screen "
@@ -147,16 +148,16 @@ std::string panel_script(const Sheet& sheet, const Panel& panel, const PlacedPan
   }
   std::string plot;
   for (std::size_t i = 0; i < panel.layers.size(); ++i) {
-    const Drawing drawing = drawing_of(fmt::format("d{}_{}", at + 1, i + 1), panel.layers[i]);
+    const Drawing drawing = drawing_of(fmt::format("d{}_{}", index + 1, i + 1), panel.layers[i]);
     script += drawing.data + drawing.commands;
     if (!drawing.plot.empty()) plot += (plot.empty() ? "plot " : ", ") + drawing.plot;
   }
   if (plot.empty()) {
-    const auto fixed = [](const char* name, const Axis& axis) {
-      const bool known = (axis.low && axis.high) || !axis.names.empty();
-      return known ? std::string() : fmt::format("set {}range [0:1]\n", name);
+    const auto default_range = [](const char* name, const Axis& axis) {
+      const bool has_range = (axis.low && axis.high) || !axis.names.empty();
+      return has_range ? std::string() : fmt::format("set {}range [0:1]\n", name);
     };
-    plot = fixed("x", panel.x) + fixed("y", panel.y) + "plot NaN notitle";
+    plot = default_range("x", panel.x) + default_range("y", panel.y) + "plot NaN notitle";
   }
   return script + plot + "\nunset label\nunset arrow\nunset object\n";
 }
@@ -170,14 +171,15 @@ std::string sample(const Sheet& sheet, const KeyEntry& entry) {
     case LayerKind::rule:
     case LayerKind::arrow:
       return fmt::format("set arrow from {} to {} nohead {} lw {:.3g} lc rgb '{}'\n",
-                         sheet.at(entry.left_cm, entry.top_cm), sheet.at(end_cm, entry.top_cm),
-                         layer.dashed ? kDashes : "", std::max(1.1 * layer.size, 1.0), colour);
+                         sheet.position(entry.left_cm, entry.top_cm),
+                         sheet.position(end_cm, entry.top_cm), layer.dashed ? kDashes : "",
+                         std::max(1.1 * layer.size, 1.0), colour);
     case LayerKind::band:
-      return pale_field(sheet.at(entry.left_cm, entry.top_cm + 0.12),
-                        sheet.at(end_cm, entry.top_cm - 0.12), colour);
+      return pale_field(sheet.position(entry.left_cm, entry.top_cm + 0.12),
+                        sheet.position(end_cm, entry.top_cm - 0.12), colour);
     default:
       return text_at("", fmt::format("{} left point pt {} ps {:.3g} lw 1.3 lc rgb '{}'",
-                                     sheet.at(0.5 * (entry.left_cm + end_cm), entry.top_cm),
+                                     sheet.position(0.5 * (entry.left_cm + end_cm), entry.top_cm),
                                      point_type(layer.glyph),
                                      std::clamp(0.5 * layer.size, 0.35, 0.6), colour));
   }
@@ -186,17 +188,18 @@ std::string sample(const Sheet& sheet, const KeyEntry& entry) {
 std::string frame_script(const Figure& figure, const Layout& layout, const Sheet& sheet) {
   std::string script;
   if (figure.simulated) {
-    script += text_at("SIMULATED", sheet.at(figure.width_cm - 0.15, 0.3) +
+    script += text_at("SIMULATED", sheet.position(figure.width_cm - 0.15, 0.3) +
                                        fmt::format(" right textcolor rgb '{}'", kStampColour));
   }
   if (!figure.stamp.empty()) {
     script += text_at(figure.stamp,
-                      sheet.at(figure.width_cm - 0.17, 0.6) +
+                      sheet.position(figure.width_cm - 0.17, 0.6) +
                           fmt::format(" left rotate by -90 textcolor rgb '{}'", kStampColour));
   }
   for (const KeyEntry& entry : layout.key) {
-    script += sample(sheet, entry) +
-              text_at(entry.text, sheet.at(entry.left_cm + kSample_cm, entry.top_cm) + " left");
+    script +=
+        sample(sheet, entry) +
+        text_at(entry.text, sheet.position(entry.left_cm + kSample_cm, entry.top_cm) + " left");
   }
   return script;
 }
@@ -210,7 +213,7 @@ const std::vector<std::string>& colour_stops() {
 }
 
 std::string gnuplot_terminal(const Figure& figure, const Layout& layout, FigureFormat format) {
-  if (format == FigureFormat::pdf) {  // its scales are measured
+  if (format == FigureFormat::pdf) {  // both scales were measured to match the SVG
     return fmt::format(
         "set terminal pdfcairo size {}cm, {:.4g}cm font 'Arial,{}' fontscale 0.75 linewidth 1.5\n",
         figure.width_cm, layout.height_cm, kText_pt);
@@ -218,7 +221,7 @@ std::string gnuplot_terminal(const Figure& figure, const Layout& layout, FigureF
   return fmt::format(
       "set terminal svg standalone size {:.0f}, {:.0f} font 'Arial,Helvetica,sans-serif,{:.2f}' "
       "background '#ffffff'\n",
-      figure.width_cm * kPixelsOfCm, layout.height_cm * kPixelsOfCm, kText_px);
+      figure.width_cm * kPixelsPerCm, layout.height_cm * kPixelsPerCm, kText_px);
 }
 
 std::string gnuplot_script(const Figure& figure, const Layout& layout) {

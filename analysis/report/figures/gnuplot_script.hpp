@@ -1,4 +1,4 @@
-/// \file The one writer of gnuplot's scripts.
+/// \file gnuplot scripts.
 #pragma once
 
 #include "analysis/report/figures/figure.hpp"
@@ -8,16 +8,16 @@
 
 namespace touchtrial::analysis {
 
-/// What gnuplot does to draw a figure: everything but terminal and output. Data are in the script,
-/// and no text of the figure can end a string or a block of data.
+/// The script that draws a figure, without terminal and output. It contains the data; no text of
+/// the figure can end a string or a block of data.
 [[nodiscard]] std::string gnuplot_script(const Figure& figure, const Layout& layout);
 
-/// The line that sets the size, fonts and pens of a format, so that both look alike.
+/// The line that sets size, fonts and pens, so that both formats look alike.
 [[nodiscard]] std::string gnuplot_terminal(const Figure& figure, const Layout& layout,
                                            FigureFormat format);
 
-/// The stops of the colour scale, from low to high: viridis, which runs evenly from dark to bright
-/// for every kind of sight. Source: Smith and van der Walt, matplotlib.
+/// The stops of the colour scale, from low to high: viridis, which is perceptually uniform, also
+/// for colour-blind readers. Source: Smith and van der Walt, matplotlib.
 [[nodiscard]] const std::vector<std::string>& colour_stops();
 
 }  // namespace touchtrial::analysis

@@ -13,7 +13,7 @@ constexpr double kNumbers_cm = 0.85;  ///< beside a y axis
 constexpr double kLabel_cm = 0.45;
 constexpr double kTick_cm = 0.15;
 constexpr double kTitle_cm = 0.65;
-constexpr double kScale_cm = 1.75;  ///< a scale of colours, with its numbers and label
+constexpr double kScale_cm = 1.75;  ///< a colour scale with its numbers and label
 constexpr double kStampWidth_cm = 1.9;
 constexpr double kKeyRow_cm = 0.42;
 constexpr double kSlant = 0.707;  ///< sine of 45 degrees
@@ -29,14 +29,14 @@ double widest_cm(const std::vector<std::string>& names) {
   return std::min(widest, kLetter_cm * kNameColumns);
 }
 
-double beside_cm(const Axis& y) {
+double tick_labels_cm(const Axis& y) {
   if (y.hidden) return 0.0;
   return y.names.empty() ? kNumbers_cm : widest_cm(y.names) + 2 * kTick_cm;
 }
 
 double left_room_cm(const Axis& y) {
   const double label_cm = y.label.empty() ? 0.0 : kLabel_cm;
-  return kEdge_cm + label_cm + beside_cm(y);
+  return kEdge_cm + label_cm + tick_labels_cm(y);
 }
 
 double right_room_cm(const Panel& panel, const Figure& figure) {
@@ -63,12 +63,12 @@ double bottom_room_cm(const Axis& x, const NamesBelow& below) {
   return x.hidden ? kTick_cm + label_cm : kTick_cm + 0.4 + label_cm;
 }
 
-/// The largest of what panels of one row, or of one column, need.
-class Most {
+/// The largest length that panels of each row, or of each column, need.
+class Maxima {
  public:
-  explicit Most(std::size_t count) : cm_(count, 0.0) {}
-  void add(std::size_t at, double cm) { cm_[at] = std::max(cm_[at], cm); }
-  [[nodiscard]] double operator[](std::size_t at) const { return cm_[at]; }
+  explicit Maxima(std::size_t count) : cm_(count, 0.0) {}
+  void add(std::size_t index, double cm) { cm_[index] = std::max(cm_[index], cm); }
+  [[nodiscard]] double operator[](std::size_t index) const { return cm_[index]; }
 
  private:
   std::vector<double> cm_;
@@ -79,10 +79,10 @@ void place_key(const Figure& figure, Layout& layout) {
   double x_cm = left_cm;
   double y_cm = 0.3;
   const double end_cm = figure.width_cm - (figure.simulated ? kStampWidth_cm : kEdge_cm);
-  std::set<std::string> named;
+  std::set<std::string> names_in_key;
   for (const Panel& panel : figure.panels) {
     for (const Layer& layer : panel.layers) {
-      if (!layer.in_key || layer.rows.empty() || !named.insert(layer.name).second) continue;
+      if (!layer.in_key || layer.rows.empty() || !names_in_key.insert(layer.name).second) continue;
       const std::string text = fitted(layer.name, kKeyColumns);
       const double entry_cm = kSample_cm + 0.35 + width_cm(text);
       if (x_cm + entry_cm > end_cm && x_cm > left_cm) {
@@ -98,8 +98,8 @@ void place_key(const Figure& figure, Layout& layout) {
 }
 
 /// The widths of a row's panels between the ends of their axes.
-std::vector<double> axes_cm(const Figure& figure, const Most& left, const Most& right) {
-  const std::size_t columns = std::min(figure.across, figure.panels.size());
+std::vector<double> axes_cm(const Figure& figure, const Maxima& left, const Maxima& right) {
+  const std::size_t columns = std::min(figure.panels_per_row, figure.panels.size());
   double free_cm = figure.width_cm;
   double shares = 0.0;
   for (std::size_t i = 0; i < columns; ++i) {
@@ -119,25 +119,25 @@ Layout layout_of(const Figure& figure) {
   Layout layout;
   place_key(figure, layout);
   if (figure.panels.empty()) return layout;
-  const std::size_t columns = std::min(figure.across, figure.panels.size());
+  const std::size_t columns = std::min(figure.panels_per_row, figure.panels.size());
   const std::size_t rows = (figure.panels.size() + columns - 1) / columns;
-  Most left(columns);
-  Most right(columns);
+  Maxima left(columns);
+  Maxima right(columns);
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     left.add(i % columns, left_room_cm(figure.panels[i].y));
     right.add(i % columns, right_room_cm(figure.panels[i], figure));
   }
   const std::vector<double> widths = axes_cm(figure, left, right);
-  Most top(rows);
-  Most bottom(rows);
-  Most height(rows);
+  Maxima top(rows);
+  Maxima bottom(rows);
+  Maxima height(rows);
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     const Panel& panel = figure.panels[i];
     PlacedPanel placed;
-    placed.beside_cm = beside_cm(panel.y);
-    placed.below = names_below(panel.x, widths[i % columns]);
+    placed.tick_labels_cm = tick_labels_cm(panel.y);
+    placed.x_names = names_below(panel.x, widths[i % columns]);
     top.add(i / columns, panel.title.empty() ? kEdge_cm : kTitle_cm);
-    bottom.add(i / columns, bottom_room_cm(panel.x, placed.below));
+    bottom.add(i / columns, bottom_room_cm(panel.x, placed.x_names));
     height.add(i / columns,
                panel.aspect > 0.0 ? widths[i % columns] * panel.aspect : panel.height_cm);
     layout.panels.push_back(std::move(placed));

@@ -1,4 +1,4 @@
-/// \file Where the parts of a figure lie on its sheet, by the lengths of their texts.
+/// \file Places the parts of a figure on its sheet. The lengths of texts determine the places.
 #pragma once
 
 #include "analysis/report/figures/figure.hpp"
@@ -8,26 +8,26 @@
 
 namespace touchtrial::analysis {
 
-/// The names below an axis, as far as there is room for them.
+/// The names below an axis, shortened to fit.
 struct NamesBelow {
-  std::vector<std::string> names;  ///< shortened if they are slanted
+  std::vector<std::string> names;
   bool slanted = false;
   double room_cm = 0.0;
 };
 
-/// A panel, with the distances of its axes' ends from the sheet's left and top edge.
+/// The distances of a panel's axis ends from the left and top edges of the sheet.
 struct PlacedPanel {
   double left_cm = 0.0;
   double right_cm = 0.0;
   double top_cm = 0.0;
   double bottom_cm = 0.0;
-  double beside_cm = 0.0;  ///< the room of numbers or names beside the y axis
-  NamesBelow below{};
+  double tick_labels_cm = 0.0;  ///< width of the numbers or names beside the y axis
+  NamesBelow x_names{};
 };
 
-/// A layer's name in the key.
+/// An entry of the key.
 struct KeyEntry {
-  const Layer* layer = nullptr;  ///< of the figure, for a sample
+  const Layer* layer = nullptr;  ///< shown by its sample
   std::string text;
   double left_cm = 0.0;
   double top_cm = 0.0;  ///< of its middle
@@ -39,15 +39,15 @@ struct Layout {
   std::vector<KeyEntry> key;
 };
 
-/// Panels of a column have their axes below each other, panels of a row side by side.
-/// \return with pointers into the figure
+/// Aligns the axes of the panels in each row and column.
+/// \return pointers into the figure
 [[nodiscard]] Layout layout_of(const Figure& figure);
 
-/// The average width of a letter of the figures' texts, in the widest of the usual fonts.
+/// The average width of a letter, in the widest of the usual fonts.
 inline constexpr double kLetter_cm = 0.148;
-/// The longest slanted names, and names beside an axis.
+/// The maximum length of slanted names and of names beside an axis.
 inline constexpr std::size_t kNameColumns = 18;
-/// The room of a sample in the key, with its gap.
+/// The width of a sample in the key, with its gap.
 inline constexpr double kSample_cm = 0.55;
 
 }  // namespace touchtrial::analysis

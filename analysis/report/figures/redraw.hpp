@@ -1,4 +1,4 @@
-/// \file The files with which users redraw a figure in their own style.
+/// \file The files from which users redraw a figure in their own style.
 #pragma once
 
 #include "analysis/report/figures/figure.hpp"
@@ -8,10 +8,9 @@
 
 namespace touchtrial::analysis {
 
-/// The figure's data and scripts by the names of their files: "<id>.csv", one row for each row of
-/// each layer (docs/report.md); "<id>.gp", gnuplot's script, which prints the SVG; "<id>.py" for
-/// matplotlib and "<id>.r" for ggplot2, which read the CSV beside them; and pictures of layers as
-/// "<id>-<layer>.png".
+/// The figure's data and scripts by file name: "<id>.csv", one row per row of a layer
+/// (docs/report.md); "<id>.gp", the gnuplot script, which prints the SVG; "<id>.py" for matplotlib
+/// and "<id>.r" for ggplot2, which read the CSV; and pictures of layers as "<id>-<layer>.png".
 [[nodiscard]] std::map<std::string, std::string> redraw_files(const Figure& figure);
 
 }  // namespace touchtrial::analysis

@@ -1,33 +1,17 @@
 #include "analysis/report/figures/redraw_scripts.hpp"
 #include "analysis/report/figures/style.hpp"
 
+#include <array>
+
 #include <fmt/format.h>
 
 namespace touchtrial::analysis {
 namespace {
 
-int r_shape(Glyph glyph) noexcept {
-  switch (glyph) {
-    case Glyph::disc:
-      return 16;
-    case Glyph::square:
-      return 15;
-    case Glyph::triangle:
-      return 17;
-    case Glyph::diamond:
-      return 18;
-    case Glyph::down:
-      return 25;
-    case Glyph::ring:
-      return 1;
-    case Glyph::cross:
-      return 4;
-  }
-  return 16;
-}
+constexpr std::array kShapes{16, 15, 17, 18, 25, 1, 4};  // in the order of Glyph
 
-/// One layer's terms, each after a plus.
-std::string in_r(const Layer& layer, int number) {
+/// The terms of one layer, each after a plus.
+std::string r_layer(const Layer& layer, int number) {
   const std::string data = fmt::format("layer({})", number);
   const std::string look = "colour = " + quoted(colour_of(layer));
   const std::string fill = "fill = " + quoted(colour_of(layer));
@@ -36,7 +20,8 @@ std::string in_r(const Layer& layer, int number) {
   };
   const std::string points =
       term("geom_point", "x, y",
-           fmt::format("shape = {}, size = {:.3g}, {}", r_shape(layer.glyph), layer.size, look));
+           fmt::format("shape = {}, size = {:.3g}, {}",
+                       kShapes[static_cast<std::size_t>(layer.glyph)], layer.size, look));
   const std::string style = layer.dashed ? ", linetype = 2" : "";
   switch (layer.kind) {
     case LayerKind::points:
@@ -51,7 +36,7 @@ std::string in_r(const Layer& layer, int number) {
       return term("geom_ribbon", "x, ymin = low, ymax = high", fill + ", alpha = 0.2");
     case LayerKind::interval:
       return term("geom_linerange", "x, ymin = low, ymax = high", look) + points;
-    case LayerKind::across:
+    case LayerKind::horizontal_interval:
       return term("geom_linerange", "y = y, xmin = low, xmax = high", look) + points;
     case LayerKind::box:
       return term("geom_crossbar", "x, y, ymin = low, ymax = high",
@@ -81,7 +66,7 @@ std::string in_r(const Layer& layer, int number) {
   return "";
 }
 
-std::string axis_in_r(char name, const Axis& axis) {
+std::string r_axis(char name, const Axis& axis) {
   std::string scale = fmt::format("scale_{}_continuous({}", name, quoted(axis.label));
   if (!axis.names.empty()) {
     scale += fmt::format(", breaks = {}, labels = {}", numbers_of(axis.names, "c(", ")"),
@@ -103,18 +88,16 @@ std::string axis_in_r(char name, const Axis& axis) {
 }
 
 /// Limits that do not drop data.
-std::string limits_in_r(const Panel& panel) {
-  const auto of = [](const Axis& axis) {
-    if (!axis.names.empty()) return fmt::format("c(0.5, {}.5)", axis.names.size());
-    return axis.low && axis.high ? fmt::format("c({:.6g}, {:.6g})", *axis.low, *axis.high)
-                                 : std::string("NULL");
+std::string r_limits(const Panel& panel) {
+  const auto limits = [](const Axis& axis) -> std::string {
+    const bool is_named = !axis.names.empty();
+    if (!is_named && (!axis.low || !axis.high)) return "NULL";
+    const std::string ends = is_named ? fmt::format("c(0.5, {}.5)", axis.names.size())
+                                      : fmt::format("c({:.6g}, {:.6g})", *axis.low, *axis.high);
+    return axis.reversed ? "rev(" + ends + ")" : ends;
   };
-  const auto turned = [&of](const Axis& axis) {
-    const std::string limits = of(axis);
-    return axis.reversed && limits != "NULL" ? "rev(" + limits + ")" : limits;
-  };
-  return fmt::format(" +\n  coord_cartesian(xlim = {}, ylim = {})", turned(panel.x),
-                     turned(panel.y));
+  return fmt::format(" +\n  coord_cartesian(xlim = {}, ylim = {})", limits(panel.x),
+                     limits(panel.y));
 }
 
 }  // namespace
@@ -123,7 +106,7 @@ std::string ggplot_script(const Figure& figure, const Layout& layout) {
   const Grid grid = grid_of(figure, layout);
   std::string script =
       fmt::format(
-          "# Draws {0}.csv, which lies beside, with ggplot2:\n#     Rscript {0}.r FILE.pdf\n",
+          "# Draws {0}.csv (in the same folder) with ggplot2:\n#     Rscript {0}.r FILE.pdf\n",
           figure.id) +
       std::string(ggplot_head());
   int number = 0;
@@ -132,22 +115,20 @@ std::string ggplot_script(const Figure& figure, const Layout& layout) {
     script += fmt::format("\npanels[[{}]] <- ggplot()", i + 1);
     for (const Layer& layer : panel.layers) {
       ++number;
-      if (!layer.rows.empty()) script += in_r(layer, number);
+      if (!layer.rows.empty()) script += r_layer(layer, number);
     }
-    script += " +\n  theme_classic(base_size = 8)" + axis_in_r('x', panel.x) +
-              axis_in_r('y', panel.y) + limits_in_r(panel) +
-              fmt::format(" +\n  ggtitle({})\n", quoted(panel.title));
+    script += " +\n  theme_classic(base_size = 8)" + r_axis('x', panel.x) + r_axis('y', panel.y) +
+              r_limits(panel) + fmt::format(" +\n  ggtitle({})\n", quoted(panel.title));
   }
   return script +
          fmt::format(
-             "\nwanted <- commandArgs(TRUE)\npdf(if (length(wanted)) wanted[1] else paste0(stem, "
+             "\nfiles <- commandArgs(TRUE)\npdf(if (length(files)) files[1] else paste0(stem, "
              "\"-ggplot2.pdf\"), {:.2f}, {:.2f})\ngrid::pushViewport(grid::viewport(layout = "
              "grid::grid.layout({}, {}, widths = c({}), heights = c({}))))\nfor (i in "
-             "seq_along(panels)) {{\n  print(panels[[i]], "
-             "vp = grid::viewport(layout.pos.row = (i - 1) %/% {} + 1, layout.pos.col = (i - 1) "
-             "%% {} + 1))\n}}\n",
-             figure.width_cm * kInchesOfCm, layout.height_cm * kInchesOfCm, grid.rows, grid.columns,
-             grid.widths, grid.heights, grid.columns, grid.columns) +
+             "seq_along(panels)) {{\n  print(panels[[i]], vp = grid::viewport(layout.pos.row = (i "
+             "- 1) %/% {} + 1, layout.pos.col = (i - 1) %% {} + 1))\n}}\n",
+             figure.width_cm * kInchesPerCm, layout.height_cm * kInchesPerCm, grid.rows,
+             grid.columns, grid.widths, grid.heights, grid.columns, grid.columns) +
          (figure.simulated || !figure.stamp.empty()
               ? fmt::format("grid::popViewport()\ngrid::grid.text({}, 0.99, 0.99, c(\"right\", "
                             "\"top\"), gp = grid::gpar(col = \"#b3261e\", fontsize = 8))\n",

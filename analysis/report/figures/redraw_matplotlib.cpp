@@ -1,33 +1,18 @@
 #include "analysis/report/figures/redraw_scripts.hpp"
 #include "analysis/report/figures/style.hpp"
 
+#include <array>
+
 #include <fmt/format.h>
 
 namespace touchtrial::analysis {
 namespace {
 
-const char* python_marker(Glyph glyph) noexcept {
-  switch (glyph) {
-    case Glyph::square:
-      return "s";
-    case Glyph::triangle:
-      return "^";
-    case Glyph::diamond:
-      return "D";
-    case Glyph::down:
-      return "v";
-    case Glyph::cross:
-      return "x";
-    case Glyph::disc:
-    case Glyph::ring:
-      break;
-  }
-  return "o";
-}
+constexpr std::array kMarkers{"o", "s", "^", "D", "v", "o", "x"};  // in the order of Glyph
 
-/// One layer's statements.
-/// \param number  of the layer, in the data
-std::string in_python(const Layer& layer, int number) {
+/// The statements of one layer.
+/// \param number  of the layer in the CSV
+std::string python_layer(const Layer& layer, int number) {
   const std::string colour = quoted(colour_of(layer));
   const auto columns = [number](const std::string& names) {
     std::string list;
@@ -42,7 +27,7 @@ std::string in_python(const Layer& layer, int number) {
   const std::string label = layer.in_key ? ", label=" + quoted(layer.name) : "";
   const std::string scatter = fmt::format(
       "ax.scatter({}, s={:.3g}, marker=\"{}\", {}={}, linewidths=0.7{})\n", columns("x y"),
-      9.0 * layer.size * layer.size, python_marker(layer.glyph),
+      9.0 * layer.size * layer.size, kMarkers[static_cast<std::size_t>(layer.glyph)],
       layer.glyph == Glyph::ring ? "facecolors=\"none\", edgecolors" : "color", colour, label);
   const std::string style = layer.dashed ? ", linestyle=\"--\"" : "";
   switch (layer.kind) {
@@ -62,7 +47,7 @@ std::string in_python(const Layer& layer, int number) {
       return fmt::format("ax.vlines({}, color={}, linewidth=1.2)\n", columns("x low high"),
                          colour) +
              scatter;
-    case LayerKind::across:
+    case LayerKind::horizontal_interval:
       return fmt::format("ax.hlines({}, color={}, linewidth=1.2)\n", columns("y low high"),
                          colour) +
              scatter;
@@ -97,19 +82,19 @@ std::string in_python(const Layer& layer, int number) {
           columns("x y low high"), colour);
     case LayerKind::picture:
       return fmt::format(
-          "for left, top, right, bottom in zip({}):\n    ax.imshow(plt.imread(f\"{{stem}}-{}.png\")"
-          ", cmap=\"gray\", vmin=0, vmax=1, extent=(left, right, bottom, top), "
-          "aspect=\"auto\")\n",
+          "for left, top, right, bottom in zip({}):\n    "
+          "ax.imshow(plt.imread(f\"{{stem}}-{}.png\"), cmap=\"gray\", vmin=0, vmax=1, "
+          "extent=(left, right, bottom, top), aspect=\"auto\")\n",
           columns("x y low high"), number);
   }
   return "";
 }
 
-std::string limit_in(const std::optional<double>& end, const char* none) {
-  return end ? fmt::format("{:.6g}", *end) : none;
+std::string python_limit(const std::optional<double>& end) {
+  return end ? fmt::format("{:.6g}", *end) : "None";
 }
 
-std::string axis_in_python(char name, const Axis& axis) {
+std::string python_axis(char name, const Axis& axis) {
   std::string script = fmt::format("ax.set_{}label({})\n", name, quoted(axis.label));
   if (axis.logarithmic) {
     script += fmt::format("ax.set_{0}scale(\"log\")\nax.{0}axis.set_major_formatter(\"{{x:g}}\")\n",
@@ -121,8 +106,8 @@ std::string axis_in_python(char name, const Axis& axis) {
                     name, numbers_of(axis.names, "[", "]"), list_of(axis.names, "[", "]"),
                     name == 'x' ? ", rotation=45, ha=\"right\"" : "");
   } else {
-    script += fmt::format("ax.set_{}lim({}, {})\n", name, limit_in(axis.low, "None"),
-                          limit_in(axis.high, "None"));
+    script += fmt::format("ax.set_{}lim({}, {})\n", name, python_limit(axis.low),
+                          python_limit(axis.high));
   }
   if (axis.reversed) script += fmt::format("ax.invert_{}axis()\n", name);
   if (axis.hidden) script += fmt::format("ax.{}axis.set_visible(False)\n", name);
@@ -136,23 +121,23 @@ std::string matplotlib_script(const Figure& figure, const Layout& layout) {
   const std::size_t columns = grid.columns;
   std::string script =
       fmt::format(
-          "# Draws {0}.csv, which lies beside, with matplotlib 3.6 or later:\n#     python3 "
+          "# Draws {0}.csv (in the same folder) with matplotlib 3.6 or later:\n#     python3 "
           "{0}.py FILE.pdf\n",
           figure.id) +
       std::string(matplotlib_head()) +
       fmt::format(
           "figure, axes = plt.subplots({}, {}, figsize=({:.2f}, {:.2f}), squeeze=False, "
-          "layout=\"constrained\",\n                            "
-          "gridspec_kw={{\"width_ratios\": [{}], \"height_ratios\": [{}]}})\n",
-          grid.rows, columns, figure.width_cm * kInchesOfCm, layout.height_cm * kInchesOfCm,
+          "layout=\"constrained\",\n                            gridspec_kw={{\"width_ratios\": "
+          "[{}], \"height_ratios\": [{}]}})\n",
+          grid.rows, columns, figure.width_cm * kInchesPerCm, layout.height_cm * kInchesPerCm,
           grid.widths, grid.heights);
   int number = 0;
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     const Panel& panel = figure.panels[i];
     script += fmt::format("\nax = axes[{}][{}]\nax.set_title({}, loc=\"left\", fontsize=8)\n",
                           i / columns, i % columns, quoted(panel.title));
-    for (const Layer& layer : panel.layers) script += in_python(layer, ++number);
-    script += axis_in_python('x', panel.x) + axis_in_python('y', panel.y);
+    for (const Layer& layer : panel.layers) script += python_layer(layer, ++number);
+    script += python_axis('x', panel.x) + python_axis('y', panel.y);
     if (!panel.colour_scale.empty()) {
       script +=
           fmt::format("figure.colorbar(points, ax=ax, label={})\n", quoted(panel.colour_scale));

@@ -32,7 +32,7 @@ std::string list_of(const std::vector<std::string>& names, const char* open, con
 
 Grid grid_of(const Figure& figure, const Layout& layout) {
   Grid grid;
-  grid.columns = std::min(figure.across, figure.panels.size());
+  grid.columns = std::min(figure.panels_per_row, figure.panels.size());
   grid.rows = (figure.panels.size() + grid.columns - 1) / grid.columns;
   for (std::size_t i = 0; i < grid.columns; ++i) {
     grid.widths += fmt::format("{}{:.3g}", i == 0 ? "" : ", ", figure.panels[i].share);
@@ -45,8 +45,8 @@ Grid grid_of(const Figure& figure, const Layout& layout) {
 }
 
 std::string stamps_of(const Figure& figure) {
-  const char* between = figure.simulated && !figure.stamp.empty() ? " " : "";
-  return (figure.simulated ? "SIMULATED" : "") + (between + figure.stamp);
+  const char* separator = figure.simulated && !figure.stamp.empty() ? " " : "";
+  return (figure.simulated ? "SIMULATED" : "") + (separator + figure.stamp);
 }
 
 }  // namespace touchtrial::analysis

@@ -11,16 +11,16 @@
 
 namespace touchtrial::analysis {
 
-inline constexpr double kInchesOfCm = 1.0 / 2.54;
+inline constexpr double kInchesPerCm = 1.0 / 2.54;
 
-/// A text as a string of Python and of R.
+/// Quotes a text as a string literal for Python and R.
 [[nodiscard]] std::string quoted(const std::string& text);
 
-/// "c(1, 2, 3)": the numbers from 1, one for each name.
+/// "c(1, 2, 3)": numbers from 1, one per name.
 /// \param open,close  "c(" and ")", or "[" and "]"
 [[nodiscard]] std::string numbers_of(const std::vector<std::string>& names, const char* open,
                                      const char* close);
-/// The names, quoted.
+/// "c("a", "b")"
 [[nodiscard]] std::string list_of(const std::vector<std::string>& names, const char* open,
                                   const char* close);
 
@@ -29,22 +29,21 @@ struct Grid {
   std::size_t columns = 1;
   std::size_t rows = 1;
   std::string widths;   ///< comma-separated numbers
-  std::string heights;  ///< likewise
+  std::string heights;  ///< comma-separated numbers
 };
 
-/// \param figure  with a panel
+/// \param figure  must have a panel
 [[nodiscard]] Grid grid_of(const Figure& figure, const Layout& layout);
 
 /// "SIMULATED PILOT"; may be empty
 [[nodiscard]] std::string stamps_of(const Figure& figure);
 
-/// The beginning of every script: redraw_matplotlib.py and redraw_ggplot.r.
+/// The beginnings of the scripts: redraw_matplotlib.py and redraw_ggplot.r.
 [[nodiscard]] std::string_view matplotlib_head() noexcept;
 [[nodiscard]] std::string_view ggplot_head() noexcept;
 
-/// A script for matplotlib that reads the figure's CSV beside it.
+/// Scripts that read the figure's CSV in their folder.
 [[nodiscard]] std::string matplotlib_script(const Figure& figure, const Layout& layout);
-/// The same for ggplot2.
 [[nodiscard]] std::string ggplot_script(const Figure& figure, const Layout& layout);
 
 }  // namespace touchtrial::analysis

@@ -38,23 +38,23 @@ Glyph series_glyph(std::size_t n) noexcept {
 }
 
 Rgb shade_of(double share) noexcept {
-  const auto between = [share](double from, double to) {
+  const auto mixed = [share](double from, double to) {
     return static_cast<int>(std::lround(from + (to - from) * share));
   };
-  return {between(255.0, 0.0), between(255.0, 62.0), between(255.0, 110.0)};
+  return {mixed(255.0, 0.0), mixed(255.0, 62.0), mixed(255.0, 110.0)};
 }
 
 double contrast(Rgb a, Rgb b) noexcept {
-  const double one = luminance(a) + 0.05;
-  const double other = luminance(b) + 0.05;
-  return std::max(one, other) / std::min(one, other);
+  const double first = luminance(a) + 0.05;
+  const double second = luminance(b) + 0.05;
+  return std::max(first, second) / std::min(first, second);
 }
 
 Rgb ink_on(Rgb ground) noexcept {
   return contrast(kWhite, ground) > contrast(kBlack, ground) ? kWhite : kBlack;
 }
 
-std::string hexadecimal(Rgb colour) {
+std::string hex_code(Rgb colour) {
   return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue);
 }
 
@@ -62,13 +62,13 @@ std::string colour_of(const Layer& layer) {
   return layer.colour.empty() ? std::string(kInk) : layer.colour;
 }
 
-Figure figure_named(std::string id, std::string section, bool simulated, double width_cm) {
-  Figure figure;
-  figure.id = std::move(id);
-  figure.section = std::move(section);
-  figure.simulated = simulated;
-  figure.width_cm = width_cm;
-  return figure;
+Figure empty_figure(std::string id, std::string section, bool simulated, double width_cm) {
+  return {.id = std::move(id),
+          .caption = {},
+          .alt = {},
+          .section = std::move(section),
+          .width_cm = width_cm,
+          .simulated = simulated};
 }
 
 Axis percent_axis(std::string label) {
@@ -89,6 +89,19 @@ Layer chance_rule(int classes) {
   return dashed_rule(100.0 / std::max(classes, 1), "chance");
 }
 
+void put_label_outside(Panel& panel) {
+  constexpr double kRoom_cm = 1.2;
+  panel.layers.front().anchor = Anchor::start;
+  panel.room_right_cm = kRoom_cm;
+}
+
+void emphasise_few(Layer& dots) {
+  constexpr std::size_t kFew = 60;
+  if (dots.rows.size() > kFew) return;
+  dots.colour = kFaint;
+  dots.size = 1.1;
+}
+
 Layer direct_label(double x, double y, std::string text, std::string colour, Anchor anchor) {
   Layer label{.kind = LayerKind::label, .colour = std::move(colour), .anchor = anchor};
   label.rows = {{.x = x, .y = y, .text = std::move(text)}};
@@ -100,24 +113,24 @@ Datum bar(double place, double mean, const std::optional<Interval>& interval, do
   return {.x = place, .y = unit * mean, .low = unit * ends.low, .high = unit * ends.high};
 }
 
-void swarm(std::vector<Datum>& rows, double x, double width, double near,
-           std::vector<OwnValue> values) {
+void swarm(std::vector<Datum>& rows, double x, double width, double overlap,
+           std::vector<ParticipantValue> values) {
   constexpr double kStepOfWidth = 0.12;
-  std::ranges::stable_sort(values, {}, &OwnValue::value);
-  std::vector<const OwnValue*> chosen;
+  std::ranges::stable_sort(values, {}, &ParticipantValue::value);
+  std::vector<const ParticipantValue*> selected;
   const std::size_t count = std::min(values.size(), kMaxDots);
   for (std::size_t i = 0; i < count; ++i) {
-    chosen.push_back(&values[count < 2 ? i : i * (values.size() - 1) / (count - 1)]);
+    selected.push_back(&values[count < 2 ? i : i * (values.size() - 1) / (count - 1)]);
   }
-  for (std::size_t first = 0; first < chosen.size();) {
+  for (std::size_t first = 0; first < selected.size();) {
     std::size_t end = first;
-    while (end < chosen.size() && chosen[end]->value - chosen[first]->value <= near) ++end;
-    const auto together = static_cast<double>(end - first);
-    const double step = width * std::min(kStepOfWidth, 1.0 / together);
+    while (end < selected.size() && selected[end]->value - selected[first]->value <= overlap) ++end;
+    const auto dots = static_cast<double>(end - first);
+    const double step = width * std::min(kStepOfWidth, 1.0 / dots);
     for (std::size_t i = first; i < end; ++i) {
-      const double place = static_cast<double>(i - first) - 0.5 * (together - 1.0);
+      const double place = static_cast<double>(i - first) - 0.5 * (dots - 1.0);
       rows.push_back(
-          {.x = x + step * place, .y = chosen[i]->value, .text = chosen[i]->participant});
+          {.x = x + step * place, .y = selected[i]->value, .text = selected[i]->participant});
     }
     first = end;
   }
@@ -127,9 +140,9 @@ std::string stamped(bool simulated, const std::string& sentence) {
   return (simulated ? "SIMULATED participants: " : "") + sentence;
 }
 
-std::string with_interval(double share, const std::optional<Interval>& interval) {
-  if (!interval) return fmt::format("{:.1f} %", 100.0 * share);
-  return fmt::format("{:.1f} % ({:.1f} to {:.1f} %)", 100.0 * share, 100.0 * interval->low,
+std::string share_with_interval(double share, const std::optional<Interval>& interval) {
+  if (!interval) return fmt::format("{:.1f}%", 100.0 * share);
+  return fmt::format("{:.1f}% ({:.1f} to {:.1f}%)", 100.0 * share, 100.0 * interval->low,
                      100.0 * interval->high);
 }
 

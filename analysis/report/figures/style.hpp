@@ -1,5 +1,5 @@
-/// \file The common look of all figures: colours after Okabe and Ito that also differ in lightness,
-/// a mark for every colour; and how numbers become layers.
+/// \file The common style of all figures: Okabe-Ito colours, which also differ in lightness, with a
+/// mark for each colour; and layers made from numbers.
 #pragma once
 
 #include "analysis/report/figures/figure.hpp"
@@ -14,23 +14,22 @@
 namespace touchtrial::analysis {
 
 inline constexpr std::string_view kInk = "#1a1a1a";
-inline constexpr std::string_view kFaint = "#8c8c8c";  ///< of single participants
-inline constexpr std::string_view kPale = "#b4b4b4";   ///< of their lines, where they are many
+inline constexpr std::string_view kFaint = "#8c8c8c";  ///< for single participants
+inline constexpr std::string_view kPale = "#b4b4b4";   ///< for lines of many participants
 
 /// The colour of the n-th method or other series; colours repeat after six.
 [[nodiscard]] std::string series_colour(std::size_t n);
-/// The n-th series' filled mark.
 [[nodiscard]] Glyph series_glyph(std::size_t n) noexcept;
 
 struct Rgb {
-  int red = 0;  ///< 0 to 255, like the others
+  int red = 0;  ///< channels: 0 to 255
   int green = 0;
   int blue = 0;
 
   friend bool operator==(const Rgb&, const Rgb&) = default;
 };
 
-/// A colour from white to dark blue: the larger the share, the darker, in colour and in grey.
+/// A colour from white to dark blue, darker for larger shares, also in grey.
 /// \param share  0 .. 1
 [[nodiscard]] Rgb shade_of(double share) noexcept;
 /// Black or white, whichever has more contrast.
@@ -38,48 +37,52 @@ struct Rgb {
 /// The contrast of two colours, from 1 to 21. Source: WCAG 2.1, relative luminance.
 [[nodiscard]] double contrast(Rgb a, Rgb b) noexcept;
 /// "#003e6e"
-[[nodiscard]] std::string hexadecimal(Rgb colour);
+[[nodiscard]] std::string hex_code(Rgb colour);
 
-/// The layer's own colour, or ink.
+/// The layer's colour; ink if it has none.
 [[nodiscard]] std::string colour_of(const Layer& layer);
-/// A new figure without caption and panels.
-[[nodiscard]] Figure figure_named(std::string id, std::string section, bool simulated,
+/// A figure without caption and panels.
+[[nodiscard]] Figure empty_figure(std::string id, std::string section, bool simulated,
                                   double width_cm = kColumn_cm);
 
-/// An axis in per cent from 0 to 100, with room for whole marks at both ends.
+/// An axis from 0 to 100 per cent, with room for marks at both ends.
 [[nodiscard]] Axis percent_axis(std::string label);
-/// An axis of names.
 [[nodiscard]] Axis names_axis(std::vector<std::string> names, std::string label = {});
 /// A dashed line across the panel, named at its end.
 [[nodiscard]] Layer dashed_rule(double height, std::string name);
-/// The same at 1 / classes.
+/// A dashed rule at 100 / classes, named "chance".
 [[nodiscard]] Layer chance_rule(int classes);
-/// A text beside what it names.
+/// Moves the text of the panel's first layer, a rule, beyond the axis, where no mark covers it.
+void put_label_outside(Panel& panel);
+/// Makes participants' dots darker and larger if they are few.
+void emphasise_few(Layer& dots);
+/// A label beside its data.
 [[nodiscard]] Layer direct_label(double x, double y, std::string text, std::string colour,
                                  Anchor anchor = Anchor::start);
 
-/// A row for a mark with a bar, which has no length without an interval.
+/// A row for a mark with a bar; the bar has no length without an interval.
 [[nodiscard]] Datum bar(double place, double mean, const std::optional<Interval>& interval,
                         double unit = 1.0);
 
-/// A number of a participant.
-struct OwnValue {
+/// A participant's number.
+struct ParticipantValue {
   double value = 0.0;
   std::string participant{};
 };
 
-/// The most dots that `swarm` adds.
+/// The maximum number of dots of `swarm`.
 inline constexpr std::size_t kMaxDots = 120;
-/// Adds a row for each of at most kMaxDots values, evenly chosen by rank, those that would cover
-/// each other side by side around x.
-/// \param width  that they may take
-/// \param near   values so near would cover each other
-void swarm(std::vector<Datum>& rows, double x, double width, double near,
-           std::vector<OwnValue> values);
+/// Adds a row for each value, or for kMaxDots of them, evenly chosen by rank. Dots that would
+/// overlap are placed side by side around x.
+/// \param width  the maximum width of a row of dots
+/// \param overlap  values that differ by no more than this overlap
+void swarm(std::vector<Datum>& rows, double x, double width, double overlap,
+           std::vector<ParticipantValue> values);
 
-/// The sentence, after "SIMULATED participants: " if they are.
+/// The sentence, with "SIMULATED participants: " before it if they are simulated.
 [[nodiscard]] std::string stamped(bool simulated, const std::string& sentence);
-/// "87.0 % (60.9 to 91.1 %)", or "87.0 %" without an interval
-[[nodiscard]] std::string with_interval(double share, const std::optional<Interval>& interval);
+/// "87.0% (60.9 to 91.1%)", or "87.0%" without an interval
+[[nodiscard]] std::string share_with_interval(double share,
+                                              const std::optional<Interval>& interval);
 
 }  // namespace touchtrial::analysis

@@ -15,21 +15,21 @@ namespace {
 
 using std::string_view;
 
-/// What precedes an id or a reference to one.
+/// Text start an id or a reference.
 constexpr std::array<string_view, 8> kBeforeIds{" id=\"", " id='",  "href=\"#", "href='#",
                                                 "url(#",  "url('#", "url(\"#",  "url(&quot;#"};
 /// Attributes that hold several ids.
 constexpr std::array<string_view, 2> kBeforeLists{"aria-labelledby=\"", "aria-describedby=\""};
 
 template <std::size_t N>
-string_view beginning_of(string_view text, const std::array<string_view, N>& candidates) {
-  for (const string_view one : candidates) {
-    if (text.starts_with(one)) return one;
+string_view prefix_among(string_view text, const std::array<string_view, N>& candidates) {
+  for (const string_view candidate : candidates) {
+    if (text.starts_with(candidate)) return candidate;
   }
   return {};
 }
 
-/// A list of ids with the prefix before each.
+/// A list of ids with the prefix start each.
 std::string prefixed_list(string_view list, const std::string& prefix) {
   std::string all;
   bool at_begin = true;
@@ -41,14 +41,14 @@ std::string prefixed_list(string_view list, const std::string& prefix) {
   return all;
 }
 
-/// One tag with the prefix before every id that it gives or refers to.
+/// One tag with the prefix start every id and reference.
 std::string prefixed_tag(string_view tag, const std::string& prefix) {
   std::string text;
   while (!tag.empty()) {
-    if (const string_view before = beginning_of(tag, kBeforeIds); !before.empty()) {
-      text.append(before).append(prefix);
-      tag.remove_prefix(before.size());
-    } else if (const string_view list = beginning_of(tag, kBeforeLists); !list.empty()) {
+    if (const string_view start = prefix_among(tag, kBeforeIds); !start.empty()) {
+      text.append(start).append(prefix);
+      tag.remove_prefix(start.size());
+    } else if (const string_view list = prefix_among(tag, kBeforeLists); !list.empty()) {
       tag.remove_prefix(list.size());
       const string_view ids = tag.substr(0, tag.find('"'));
       text.append(list).append(prefixed_list(ids, prefix));
@@ -61,8 +61,8 @@ std::string prefixed_tag(string_view tag, const std::string& prefix) {
   return text;
 }
 
-/// Puts the prefix before every id in the tags. Texts between tags stay: a label may look like an
-/// id.
+/// Puts the prefix start every id in tags. Text between tags is unchanged, because a label may
+/// look like an id.
 std::string with_prefixed_ids(string_view svg, const std::string& prefix) {
   std::string text;
   text.reserve(svg.size() + svg.size() / 16);
@@ -79,14 +79,13 @@ std::string with_prefixed_ids(string_view svg, const std::string& prefix) {
   return text;
 }
 
-/// Up to the end of the first sentence, with its full stop.
 std::string first_sentence(const std::string& text) {
   const std::size_t end = text.find(". ");
   return end == std::string::npos ? text : text.substr(0, end + 1);
 }
 
 [[noreturn]] void refuse_svg() {
-  throw Error("gnuplot: printed no SVG" + gnuplot_remedy());
+  throw Error("gnuplot: output is not SVG" + gnuplot_remedy());
 }
 
 /// The value of an attribute of gnuplot's root element.
@@ -102,46 +101,47 @@ string_view attribute(string_view drawn, string_view name) {
 /// Removes every <title>..</title>.
 std::string without_tool_tips(string_view body) {
   static constexpr string_view kEnd = "</title>";
-  std::string kept;
+  std::string text;
   while (!body.empty()) {
     const std::size_t open = body.find("<title>");
     const std::size_t end = open == string_view::npos ? open : body.find(kEnd, open);
-    kept += body.substr(0, end == string_view::npos ? end : open);
+    text += body.substr(0, end == string_view::npos ? end : open);
     if (end == string_view::npos) break;
     body.remove_prefix(end + kEnd.size());
   }
-  return kept;
+  return text;
 }
 
-/// Removes the groups without content: gnuplot opens one at each change of pen.
+/// gnuplot opens a group at each change of pen, often an empty one.
 std::string without_empty_groups(string_view body) {
-  static constexpr string_view kClosed = ">\n</g>\n";
-  static constexpr string_view kOpened = "<g fill=\"none\"";
-  std::string kept;
+  static constexpr string_view kGroupEnd = ">\n</g>\n";
+  static constexpr string_view kGroupStart = "<g fill=\"none\"";
+  std::string text;
   while (!body.empty()) {
-    const std::size_t open = body.find(kOpened);
-    kept += body.substr(0, open);
+    const std::size_t open = body.find(kGroupStart);
+    text += body.substr(0, open);
     if (open == string_view::npos) break;
     body.remove_prefix(open);
     const std::size_t close = body.find('>');
-    if (close != string_view::npos && body.substr(close).starts_with(kClosed)) {
-      body.remove_prefix(close + kClosed.size());
+    if (close != string_view::npos && body.substr(close).starts_with(kGroupEnd)) {
+      body.remove_prefix(close + kGroupEnd.size());
     } else {
-      kept += kOpened;
-      body.remove_prefix(kOpened.size());
+      text += kGroupStart;
+      body.remove_prefix(kGroupStart.size());
     }
   }
-  return kept;
+  return text;
 }
 
 }  // namespace
 
 std::string accessible_svg(string_view drawn, const Figure& figure) {
-  static constexpr string_view kDescribed = "</desc>";
+  static constexpr string_view kDescriptionEnd = "</desc>";
   const string_view box = attribute(drawn, "viewBox=\"");
-  const std::size_t described = drawn.find(kDescribed);
-  if (described == string_view::npos) refuse_svg();
-  const std::string body = without_tool_tips(drawn.substr(described + kDescribed.size()));
+  const std::size_t description_end = drawn.find(kDescriptionEnd);
+  if (description_end == string_view::npos) refuse_svg();
+  const std::string body =
+      without_tool_tips(drawn.substr(description_end + kDescriptionEnd.size()));
   return fmt::format(
              "<svg xmlns=\"http://www.w3.org/2000/svg\" "
              "xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"{0}cm\" height=\"{1:.4g}cm\" "

@@ -1,4 +1,5 @@
-/// \file gnuplot's SVG, described for screen readers and made fit to share a page with others.
+/// \file Makes gnuplot's SVG accessible to screen readers, and its ids unique, so that several can
+/// be embedded in one page.
 #pragma once
 
 #include "analysis/report/figures/figure.hpp"
@@ -8,15 +9,15 @@
 
 namespace touchtrial::analysis {
 
-/// A whole SVG file of a drawn figure: with a title and a description for screen readers instead of
-/// gnuplot's own, with the size as printed, without tool tips (which quote the script) and empty
-/// groups, and with the figure's id before every other id.
-/// \param drawn  what gnuplot printed
-/// \throws Error if that is not gnuplot's SVG
+/// The SVG file of a figure: with its own title and description for screen readers, the printed
+/// size, and the figure's id as a prefix of every id; without tool tips (which quote the script)
+/// and empty groups.
+/// \param drawn  gnuplot's output
+/// \throws Error if it is not gnuplot's SVG
 [[nodiscard]] std::string accessible_svg(std::string_view drawn, const Figure& figure);
 
-/// The svg element of a file, without what precedes it, and with `prefix` before every id that it
-/// gives or refers to, so that several pictures can share a page.
+/// The svg element of a file, with `prefix` before every id and reference, so that several pictures
+/// can share a page.
 /// \return empty if there is no svg element, or if it contains a script
 [[nodiscard]] std::string inline_svg(std::string_view file, const std::string& prefix);
 

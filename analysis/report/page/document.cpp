@@ -7,21 +7,21 @@
 namespace touchtrial::analysis {
 namespace {
 
-constexpr const char* kBetweenWords = ", ";
+constexpr const char* kSeparator = ", ";
 
-void add_sources(const Cited& cited, std::vector<Source>& references) {
+void add_sources(const CitedText& cited, std::vector<Source>& references) {
   for (const Source source : cited.sources) {
     if (reference_number(source, references) == 0) references.push_back(source);
   }
 }
 
 void add_sources(const Table& table, std::vector<Source>& references) {
-  for (const Cited& note : table.notes) add_sources(note, references);
+  for (const CitedText& note : table.notes) add_sources(note, references);
 }
 
 void add_sources(const std::vector<Block>& blocks, std::vector<Source>& references) {
   for (const Block& block : blocks) {
-    if (const auto* cited = std::get_if<Cited>(&block)) add_sources(*cited, references);
+    if (const auto* cited = std::get_if<CitedText>(&block)) add_sources(*cited, references);
     if (const auto* table = std::get_if<Table>(&block)) add_sources(*table, references);
   }
 }
@@ -40,13 +40,13 @@ std::vector<Column> columns_of(const std::vector<std::string>& titles,
 
 std::vector<const Block*> all_blocks(const Section& section) {
   std::vector<const Block*> blocks;
-  for (const auto* some : {&section.blocks, &section.more}) {
-    for (const Block& block : *some) blocks.push_back(&block);
+  for (const auto* list : {&section.blocks, &section.folded_blocks}) {
+    for (const Block& block : *list) blocks.push_back(&block);
   }
   return blocks;
 }
 
-std::size_t references_in_print(const Document& document) {
+std::size_t printed_reference_count(const Document& document) {
   std::vector<Source> references;
   for (const Section& section : document.sections) add_sources(section.blocks, references);
   return references.size();
@@ -55,7 +55,7 @@ std::size_t references_in_print(const Document& document) {
 std::vector<Source> references_of(const Document& document) {
   std::vector<Source> references;
   for (const Section& section : document.sections) add_sources(section.blocks, references);
-  for (const Section& section : document.sections) add_sources(section.more, references);
+  for (const Section& section : document.sections) add_sources(section.folded_blocks, references);
   return references;
 }
 
@@ -66,45 +66,44 @@ std::vector<Source> references_of(const Table& table) {
 }
 
 std::size_t reference_number(Source source, const std::vector<Source>& references) {
-  const auto found = std::find(references.begin(), references.end(), source);
+  const auto found = std::ranges::find(references, source);
   if (found == references.end()) return 0;
   return static_cast<std::size_t>(found - references.begin()) + 1;
 }
 
-std::string citation_mark(const Cited& cited, const std::vector<Source>& references) {
-  if (cited.sources.empty()) return "";
+std::string citation_mark(const CitedText& cited, const std::vector<Source>& references) {
   std::string mark;
   for (const Source source : cited.sources) {
     mark += (mark.empty() ? " [" : ", ") + std::to_string(reference_number(source, references));
   }
-  return mark + "]";
+  return mark.empty() ? mark : mark + "]";
 }
 
 std::string stamped(const std::string& caption, const std::string& stamp) {
-  std::string missing;
+  std::string missing_words;
   for (std::size_t at = 0; at < stamp.size();) {
-    const std::size_t end = std::min(stamp.find(kBetweenWords, at), stamp.size());
+    const std::size_t end = std::min(stamp.find(kSeparator, at), stamp.size());
     const std::string word = stamp.substr(at, end - at);
     if (caption.find(word) == std::string::npos) {
-      missing += (missing.empty() ? "" : kBetweenWords) + word;
+      missing_words += (missing_words.empty() ? "" : kSeparator) + word;
     }
-    at = end + std::string_view(kBetweenWords).size();
+    at = end + std::string_view(kSeparator).size();
   }
-  return missing.empty() ? caption : caption + " [" + missing + "]";
+  return missing_words.empty() ? caption : caption + " [" + missing_words + "]";
 }
 
-Document tables_alone(const Document& document) {
-  Document alone = document;
-  alone.header.entries.clear();
-  for (Section& section : alone.sections) {
-    std::ranges::move(section.more, std::back_inserter(section.blocks));
-    section.more.clear();
+Document tables_only(const Document& document) {
+  Document tables = document;
+  tables.header.entries.clear();
+  for (Section& section : tables.sections) {
+    std::ranges::move(section.folded_blocks, std::back_inserter(section.blocks));
+    section.folded_blocks.clear();
     std::erase_if(section.blocks, [](const Block& block) {
       return !std::holds_alternative<Table>(block) && !std::holds_alternative<Warnings>(block);
     });
   }
-  std::erase_if(alone.sections, [](const Section& section) { return section.blocks.empty(); });
-  return alone;
+  std::erase_if(tables.sections, [](const Section& section) { return section.blocks.empty(); });
+  return tables;
 }
 
 std::vector<const Table*> tables_of(const Document& document) {

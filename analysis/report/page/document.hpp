@@ -1,6 +1,6 @@
-/// \file A report as a document, and its renderings as HTML, Markdown, LaTeX and plain text. All
-/// texts are plain UTF-8 that may contain anything (labels and reasons are the user's); the
-/// renderings escape them. Equal documents give equal bytes. All functions are thread-safe.
+/// \file A report as a document, and its renderings as HTML, Markdown, LaTeX and plain text. Texts
+/// are plain UTF-8 and may contain anything (users write labels and reasons); renderings escape
+/// them. Equal documents give equal bytes. All functions are thread-safe.
 #pragma once
 
 #include "analysis/report/bibliography.hpp"
@@ -14,11 +14,11 @@
 
 namespace touchtrial::analysis {
 
-/// One sentence or more, with the publications that support it.
-struct Cited {
+/// One or more sentences, with their sources.
+struct CitedText {
   std::string text;
   std::vector<Source> sources{};
-  std::string lead{};  ///< stands before the text, emphasised: a verdict in a word or two
+  std::string lead{};  ///< an emphasised verdict of one or two words before the text
 };
 
 enum class Align { left, right };
@@ -28,18 +28,18 @@ struct Column {
   Align align = Align::right;
 };
 
-/// \param titles  the first one's column heads the rows, and so stands left
-/// \param left  titles of the other columns that stand left
+/// \param titles  the first column heads the rows, and is aligned left
+/// \param left  titles of other left-aligned columns
 [[nodiscard]] std::vector<Column> columns_of(const std::vector<std::string>& titles,
                                              const std::vector<std::string>& left = {});
 
 struct Cell {
   std::string text;
-  bool strong = false;  ///< emphasised, for example the correct answers in a confusion matrix
+  bool strong = false;  ///< emphasised, such as correct answers in a confusion matrix
 
-  Cell(std::string shown, bool emphasised = false)  // NOLINT(google-explicit-constructor)
-      : text(std::move(shown)), strong(emphasised) {}
-  Cell(const char* shown) : text(shown) {}  // NOLINT(google-explicit-constructor)
+  Cell(std::string content, bool emphasised = false)  // NOLINT(google-explicit-constructor)
+      : text(std::move(content)), strong(emphasised) {}
+  Cell(const char* content) : text(content) {}  // NOLINT(google-explicit-constructor)
 };
 
 /// The first cell of each row is the header of the row.
@@ -48,15 +48,15 @@ struct Table {
   std::string caption;
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows{};
-  std::vector<Cited> notes{};  ///< stand below the table and explain its numbers
+  std::vector<CitedText> notes{};  ///< below the table
 };
 
 struct Picture {
   std::string id;         ///< unique; characters [a-z0-9-]
   std::string caption;    ///< with its stamp, if any
-  std::string alt;        ///< what it shows, in words
+  std::string alt;        ///< text alternative
   std::string svg;        ///< a whole SVG file; empty if it could not be drawn
-  std::string section{};  ///< id of the section or subheading below which framed_document puts it
+  std::string section{};  ///< id of its section or subheading
 };
 
 struct Subheading {
@@ -64,21 +64,19 @@ struct Subheading {
   std::string title;
 };
 
-/// Warnings against misreading the report.
 struct Warnings {
   std::vector<std::string> sentences;
   std::string title{};  ///< may be empty
 };
 
-/// Names and their meanings.
 struct Definitions {
   std::vector<std::pair<std::string, std::string>> entries;
 };
 
-/// One step of the participants' flow, and the participants who leave before the next step.
+/// One step of the participant flow, and the losses before the next step.
 struct FlowStep {
   std::string text;
-  std::vector<std::string> leaving{};
+  std::vector<std::string> losses{};
 };
 struct Flow {
   std::string id;
@@ -86,67 +84,67 @@ struct Flow {
   std::vector<FlowStep> steps;
 };
 
-using Block = std::variant<Cited, Table, Picture, Subheading, Warnings, Definitions, Flow>;
+using Block = std::variant<CitedText, Table, Picture, Subheading, Warnings, Definitions, Flow>;
 
 struct Section {
   std::string id;
   std::string title;
   std::vector<Block> blocks;
-  bool page_only = false;  ///< left out of the text for a terminal
-  /// What only specialists read: folded on the page, and left out in print and on a terminal.
-  std::vector<Block> more{};
+  bool page_only = false;  ///< omitted in a terminal
+  /// Details for specialists: folded on the page, omitted in print and in a terminal.
+  std::vector<Block> folded_blocks{};
 
-  /// Whether all of it is folded.
-  [[nodiscard]] bool is_folded() const { return blocks.empty() && !more.empty(); }
+  [[nodiscard]] bool is_folded() const { return blocks.empty() && !folded_blocks.empty(); }
 };
 
-/// A section's blocks, then those that are folded.
+/// \return pointers to the blocks, then to the folded blocks
 [[nodiscard]] std::vector<const Block*> all_blocks(const Section& section);
 
 struct Document {
   std::string title;
-  std::string stamp;  ///< for example "SIMULATED"; may be empty; stands on every table
+  std::string stamp;                  ///< on every table, such as "SIMULATED"; may be empty
   std::vector<std::string> banners;   ///< warnings at the top of the page
   Definitions header;                 ///< study, program and evidence; after the sections
   std::vector<Section> sections;      ///< the most important first
   std::string colophon;               ///< last line
   bool numbered = true;               ///< whether the page numbers its tables and figures
-  std::string about = "This report";  ///< the title of the header
+  std::string about = "This report";  ///< title of the header
 };
 
-/// Every cited source, in the order of first citation, those that only folded blocks cite at the
-/// end. Reference number n is element n - 1.
+/// All cited sources in the order of first citation; those cited only in folded blocks are last.
+/// Reference n is element n - 1.
 [[nodiscard]] std::vector<Source> references_of(const Document& document);
-/// How many of references_of are cited outside folded blocks.
-[[nodiscard]] std::size_t references_in_print(const Document& document);
-/// Every source that one table cites, in the order of first citation.
+/// The number of references_of that are cited outside folded blocks.
+[[nodiscard]] std::size_t printed_reference_count(const Document& document);
+/// The sources that a table cites, in the order of first citation.
 [[nodiscard]] std::vector<Source> references_of(const Table& table);
 
-/// The citations of a text, for example " [1, 3]"; empty without a source.
-[[nodiscard]] std::string citation_mark(const Cited& cited, const std::vector<Source>& references);
+/// " [1, 3]"; empty without a source
+[[nodiscard]] std::string citation_mark(const CitedText& cited,
+                                        const std::vector<Source>& references);
 
 /// The number of a source in a list of references, from 1; 0 if the list does not contain it.
 [[nodiscard]] std::size_t reference_number(Source source, const std::vector<Source>& references);
 
-/// The caption, followed by the words of the document's stamp that it does not contain yet.
+/// The caption, followed by the words of the stamp that it does not contain.
 [[nodiscard]] std::string stamped(const std::string& caption, const std::string& stamp);
 
-/// The tables and warnings of a document, in the sections that have some; without its header.
-[[nodiscard]] Document tables_alone(const Document& document);
+/// A document with only the tables and warnings of another, without its header.
+[[nodiscard]] Document tables_only(const Document& document);
 
 /// Every table of a document, in order.
 [[nodiscard]] std::vector<const Table*> tables_of(const Document& document);
 
-/// One HTML page without scripts and without references to other files. Sections that are folded
-/// as a whole follow the others; the numbers of folded tables and figures begin with S.
+/// One HTML page without scripts and references to other files. Completely folded sections are
+/// last; the numbers of folded tables and figures begin with S.
 [[nodiscard]] std::string page_html(const Document& document);
 
 /// One table in GitHub's Markdown, with its notes and references.
 [[nodiscard]] std::string table_markdown(const Table& table, const std::string& stamp);
 
 /// A document in GitHub's Markdown, with the references at the end.
-/// \param pictures  the folder of the pictures' files, relative to the Markdown file: "images"; a
-///   picture that could not be drawn is described instead
+/// \param pictures  the folder of pictures, relative to the Markdown file: "images"; a picture that
+///   could not be drawn is described
 [[nodiscard]] std::string document_markdown(const Document& document, const std::string& pictures);
 
 /// One table as LaTeX for \input: a float, or a longtable if it has many rows. The preamble needs
@@ -156,10 +154,9 @@ struct Document {
 /// the end.
 [[nodiscard]] std::string tables_latex(const Document& document);
 
-/// The document as text for a terminal: the sections that are not for the page alone, then the
-/// header. Without pictures, subheadings, the notes that only name a method, which are those with
-/// sources, and what is folded, but for its warnings. An asterisk precedes emphasised cells. Begins
-/// with the banners and ends with the stamp, if there are any.
+/// The document as text for a terminal: banners, sections that are not page_only, header and stamp.
+/// Omits pictures, subheadings, notes with sources (these only name a method), and folded blocks
+/// except warnings. An asterisk precedes emphasised cells.
 /// \param width  columns of the terminal, >= 80
 [[nodiscard]] std::string document_text(const Document& document, std::size_t width = kTextWidth);
 

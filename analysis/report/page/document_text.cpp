@@ -9,11 +9,11 @@
 namespace touchtrial::analysis {
 namespace {
 
-constexpr std::size_t kTitleLines = 3;  ///< most lines of a column's title, if its words allow it
+constexpr std::size_t kTitleLines = 3;  ///< maximum for a column's title, unless a word is too long
 
 using Row = std::vector<std::string>;
 
-/// The texts of a table's cells, the header first.
+/// The texts of cells, the header first.
 std::vector<Row> texts_of(const Table& table) {
   std::vector<Row> rows(1);
   for (const Column& column : table.columns) rows.front().push_back(column.title);
@@ -24,7 +24,7 @@ std::vector<Row> texts_of(const Table& table) {
   return rows;
 }
 
-/// The width of a column: its longest cell's, or as much more as its title needs.
+/// The width of the longest cell, or more if the title needs it.
 std::size_t width_of(const std::vector<Row>& rows, std::size_t column) {
   const std::string& title = rows.front()[column];
   std::size_t width = 1;
@@ -36,8 +36,8 @@ std::size_t width_of(const std::vector<Row>& rows, std::size_t column) {
   return std::min(width, kCellWidth);
 }
 
-/// The lines of one row, whose longer cells take several.
-/// \param is_header  whether shorter cells stand at the bottom
+/// Wraps the cells of one row.
+/// \param is_header  aligns cells at the bottom
 std::vector<Row> lines_of_row(const Row& row, const std::vector<std::size_t>& widths,
                               bool is_header) {
   std::vector<Row> cells;
@@ -71,17 +71,17 @@ std::string table_text(const Table& table, std::size_t width) {
   return text.text(width);
 }
 
-/// Renders the blocks of one document in turn.
+/// Renders blocks.
 class BlockText {
  public:
   BlockText(const std::string& stamp, std::size_t width) : stamp_(stamp), width_(width) {}
 
-  std::string operator()(const Cited& cited) const {
+  std::string operator()(const CitedText& cited) const {
     return paragraph("  ", cited.lead.empty() ? cited.text : cited.lead + ' ' + cited.text);
   }
   std::string operator()(const Table& table) const {
     std::string text = caption(table.caption) + table_text(table, width_);
-    for (const Cited& note : table.notes) {
+    for (const CitedText& note : table.notes) {
       if (note.sources.empty()) text += paragraph("  ", note.text);
     }
     return text;
@@ -90,7 +90,7 @@ class BlockText {
   std::string operator()(const Subheading&) const { return ""; }
   std::string operator()(const Warnings& warnings) const {
     std::string text = warnings.title.empty() ? "" : paragraph("  ", warnings.title);
-    for (const std::string& one : warnings.sentences) text += paragraph("  - ", one);
+    for (const std::string& sentence : warnings.sentences) text += paragraph("  - ", sentence);
     return text;
   }
   std::string operator()(const Definitions& definitions) const {
@@ -104,7 +104,7 @@ class BlockText {
     std::string text = caption(flow.caption);
     for (const FlowStep& step : flow.steps) {
       text += paragraph("  ", step.text);
-      for (const std::string& leaving : step.leaving) text += paragraph("    - ", leaving);
+      for (const std::string& loss : step.losses) text += paragraph("    - ", loss);
     }
     return text;
   }
@@ -137,7 +137,7 @@ std::string document_text(const Document& document, std::size_t width) {
     if (section.page_only || section.blocks.empty()) continue;
     text += section_title(section.title, document.stamp);
     for (const Block& block : section.blocks) text += std::visit(blocks, block);
-    for (const Block& block : section.more) {
+    for (const Block& block : section.folded_blocks) {
       if (const auto* warnings = std::get_if<Warnings>(&block)) text += blocks(*warnings);
     }
   }

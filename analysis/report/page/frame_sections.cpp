@@ -23,12 +23,12 @@ struct ServoNumbers {
 ServoNumbers servo_numbers(const std::vector<ServoTrial>& trials) {
   ServoNumbers numbers;
   numbers.lowest_rate_hz = trials.front().health.rate_hz;
-  for (const ServoTrial& one : trials) {
-    numbers.p99_us.push_back(one.health.lateness_p99_us);
-    numbers.worst_us = std::max(numbers.worst_us, one.health.lateness_worst_us);
-    numbers.lowest_rate_hz = std::min(numbers.lowest_rate_hz, one.health.rate_hz);
-    numbers.overruns += one.overruns;
-    numbers.lost += one.health.lost;
+  for (const ServoTrial& trial : trials) {
+    numbers.p99_us.push_back(trial.health.lateness_p99_us);
+    numbers.worst_us = std::max(numbers.worst_us, trial.health.lateness_worst_us);
+    numbers.lowest_rate_hz = std::min(numbers.lowest_rate_hz, trial.health.rate_hz);
+    numbers.overruns += trial.overruns;
+    numbers.lost += trial.health.lost;
   }
   return numbers;
 }
@@ -45,18 +45,18 @@ std::vector<Block> registration_blocks(const study::Registration& registration) 
        {"stopping rule", stated(registration.stopping_rule)},
        {"exclusions", stated(registration.exclusions)}}};
   for (const auto& field : study::fields_of(registration)) definitions.entries.push_back(field);
-  return {Subheading{"registration", "What was registered beforehand"}, std::move(definitions)};
+  return {Subheading{"registration", "Registration"}, std::move(definitions)};
 }
 
 std::optional<Table> servo_table(const Collection& collection) {
   if (collection.servo_trials.empty()) return {};
   ServoNumbers numbers = servo_numbers(collection.servo_trials);
   const Quartiles p99 = quartiles(std::move(numbers.p99_us));
-  Table table{"servo", "Servo timing in real-time trials", {{"what", Align::left}, {"value"}}};
+  Table table{"servo", "Servo timing in real-time trials", {{"quantity", Align::left}, {"value"}}};
   table.rows = {{"trials", std::to_string(collection.servo_trials.size())},
                 {"lowest mean rate of a trial (Hz)", plain_figure(numbers.lowest_rate_hz, 1)},
                 {"trials' 99th percentile of lateness, median (µs)", plain_figure(p99.median, 1)},
-                {"the same, quartiles (µs)",
+                {"trials' 99th percentile of lateness, quartiles (µs)",
                  plain_figure(p99.lower, 1) + " and " + plain_figure(p99.upper, 1)},
                 {"maximum lateness (µs)", plain_figure(numbers.worst_us, 1)},
                 {"late ticks", std::to_string(numbers.overruns)},

@@ -11,8 +11,8 @@
 namespace touchtrial::analysis {
 namespace {
 
-constexpr std::size_t kFoldedRows = 60;  ///< longer tables are folded away
-constexpr std::size_t kWholeRows = 12;   ///< longer tables may break across printed pages
+constexpr std::size_t kMaxUnfoldedRows = 60;  ///< longer tables are folded
+constexpr std::size_t kMaxUnbrokenRows = 12;  ///< longer tables may break across printed pages
 /// Text columns with longer cells get a minimum width.
 constexpr std::size_t kWideHtmlCell = 40;
 
@@ -24,28 +24,27 @@ constexpr const char* kHead = R"(<!doctype html>
 <meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
 )";
 
-/// How many tables and figures were written so far.
+/// The numbers of tables and figures so far.
 struct Numbers {
   int tables = 0;
   int figures = 0;
 };
 
-/// The document with its references. What is folded is numbered by itself, so that the numbers in
-/// print have no gaps.
+/// Folded parts have separate numbers, so that the numbers in print have no gaps.
 struct Writer {
   const Document& document;
   std::vector<Source> references;
-  Numbers shown{};
-  Numbers folded{};
+  Numbers unfolded_numbers{};
+  Numbers folded_numbers{};
   bool is_folding = false;
 
-  std::string next(int Numbers::*what) {
-    Numbers& numbers = is_folding ? folded : shown;
-    return (is_folding ? "S" : "") + std::to_string(++(numbers.*what));
+  std::string next_number(int Numbers::*kind) {
+    Numbers& numbers = is_folding ? folded_numbers : unfolded_numbers;
+    return (is_folding ? "S" : "") + std::to_string(++(numbers.*kind));
   }
 };
 
-/// The text escaped, with no line break within "p < 0.001" or "N = 20".
+/// Escaped text, with no line break within "p < 0.001" or "N = 20".
 std::string html_text(const std::string& text) {
   constexpr const char* kNoBreak = "\u00a0";
   std::string html = xml_escaped(text);
@@ -59,7 +58,7 @@ std::string html_text(const std::string& text) {
   return html;
 }
 
-std::string cited_html(const Writer& writer, const Cited& cited) {
+std::string cited_html(const Writer& writer, const CitedText& cited) {
   std::string text = html_text(cited.text);
   if (!cited.lead.empty()) text = "<strong>" + html_text(cited.lead) + "</strong> " + text;
   for (std::size_t i = 0; i < cited.sources.size(); ++i) {
@@ -70,7 +69,7 @@ std::string cited_html(const Writer& writer, const Cited& cited) {
   return cited.sources.empty() ? text : text + "]";
 }
 
-std::string html_of(Writer& writer, const Cited& paragraph) {
+std::string html_of(Writer& writer, const CitedText& paragraph) {
   return (paragraph.lead.empty() ? "<p>" : "<p class=\"lead\">") + cited_html(writer, paragraph) +
          "</p>\n";
 }
@@ -84,7 +83,8 @@ std::string html_of(Writer& /*writer*/, const Warnings& warnings) {
   std::string html = "<div class=\"warnings\">\n";
   if (!warnings.title.empty()) html += "<p>" + html_text(warnings.title) + "</p>\n";
   html += "<ul>\n";
-  for (const std::string& one : warnings.sentences) html += "<li>" + html_text(one) + "</li>\n";
+  for (const std::string& sentence : warnings.sentences)
+    html += "<li>" + html_text(sentence) + "</li>\n";
   return html + "</ul>\n</div>\n";
 }
 
@@ -133,20 +133,20 @@ std::string body_rows(const Table& table) {
   return html + "</tbody>\n";
 }
 
-/// "<b>Table 3.</b> "; nothing on a page that does not number.
-std::string number_of(const Writer& writer, const char* what, const std::string& number) {
-  return writer.document.numbered ? fmt::format("<b>{} {}.</b> ", what, number) : "";
+/// "<b>Table 3.</b> "; empty if tables and figures have no numbers
+std::string number_of(const Writer& writer, const char* kind, const std::string& number) {
+  return writer.document.numbered ? fmt::format("<b>{} {}.</b> ", kind, number) : "";
 }
 
 std::string notes_html(const Writer& writer, const Table& table) {
   if (table.notes.empty()) return "";
   std::string html = "<div class=\"notes\">\n";
-  for (const Cited& note : table.notes) html += "<p>" + cited_html(writer, note) + "</p>\n";
+  for (const CitedText& note : table.notes) html += "<p>" + cited_html(writer, note) + "</p>\n";
   return html + "</div>\n";
 }
 
 std::string html_of(Writer& writer, const Table& table) {
-  const std::string number = writer.next(&Numbers::tables);
+  const std::string number = writer.next_number(&Numbers::tables);
   const std::string caption = fmt::format("{}{}", number_of(writer, "Table", number),
                                           html_text(stamped(table.caption, writer.document.stamp)));
   std::string html = fmt::format(
@@ -155,17 +155,17 @@ std::string html_of(Writer& writer, const Table& table) {
       "<table>\n<caption id=\"table-{0}-caption\"><span>{1}</span></caption>\n",
       table.id, caption);
   html += header_row(table) + body_rows(table) + "</table>\n</div>\n" + notes_html(writer, table);
-  if (table.rows.size() > kFoldedRows) {
+  if (table.rows.size() > kMaxUnfoldedRows) {
     html = fmt::format("<details>\n<summary>Table {}, {} rows</summary>\n", number,
                        table.rows.size()) +
            html + "</details>\n";
   }
   return fmt::format("<div class=\"table{}\" id=\"table-{}\">\n",
-                     table.rows.size() <= kWholeRows ? " whole" : "", table.id) +
+                     table.rows.size() <= kMaxUnbrokenRows ? " whole" : "", table.id) +
          html + "</div>\n";
 }
 
-/// \return the width that an SVG file states, else that of a page
+/// The width in an SVG file, by default that of a page.
 double width_cm(std::string_view svg) {
   constexpr std::string_view kWidth = "width=\"";
   constexpr double kPage_cm = 17.0;
@@ -178,52 +178,47 @@ double width_cm(std::string_view svg) {
 
 std::string html_of(Writer& writer, const Picture& picture) {
   const std::string svg = inline_svg(picture.svg, "figure-" + picture.id + "-");
-  const std::string number = writer.next(&Numbers::figures);
-  std::string html = "<figure id=\"figure-" + picture.id + "\">\n";
-  if (!svg.empty()) {
-    html += fmt::format(
-        "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Figure {}\">"
-        "<div class=\"plot\" style=\"--cm: {}\" role=\"img\" aria-label=\"{}\">\n{}\n"
-        "</div></div>\n",
-        number, width_cm(picture.svg), html_text(picture.alt), svg);
-  }
+  const std::string number = writer.next_number(&Numbers::figures);
+  const std::string label = number_of(writer, "Figure", number);
+  const std::string open = "<figure id=\"figure-" + picture.id + "\">\n";
+  const std::string& stamp = writer.document.stamp;
   if (svg.empty()) {
-    // The caption would describe marks and bars that are missing, so the description stands
-    // instead.
-    return html + fmt::format("<figcaption>{}<b>Not drawn.</b> {}</figcaption>\n</figure>\n",
-                              number_of(writer, "Figure", number),
-                              html_text(stamped(picture.alt, writer.document.stamp)));
+    // The caption would describe marks that are missing.
+    return open + fmt::format("<figcaption>{}<b>Not drawn.</b> {}</figcaption>\n</figure>\n", label,
+                              html_text(stamped(picture.alt, stamp)));
   }
-  html += fmt::format("<figcaption>{}{}</figcaption>\n", number_of(writer, "Figure", number),
-                      html_text(stamped(picture.caption, writer.document.stamp)));
-  return html +
-         fmt::format("<details><summary>{}In words</summary><p>{}</p></details>\n",
-                     number_of(writer, "Figure", number), html_text(picture.alt)) +
-         "</figure>\n";
+  return open +
+         fmt::format(
+             "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Figure {0}\">"
+             "<div class=\"plot\" style=\"--cm: {1}\" role=\"img\" aria-label=\"{2}\">\n{3}\n"
+             "</div></div>\n<figcaption>{4}{5}</figcaption>\n"
+             "<details><summary>{4}In words</summary><p>{2}</p></details>\n</figure>\n",
+             number, width_cm(picture.svg), html_text(picture.alt), svg, label,
+             html_text(stamped(picture.caption, stamp)));
 }
 
 std::string html_of(Writer& writer, const Flow& flow) {
   std::string html = "<figure class=\"flow\" id=\"figure-" + flow.id + "\">\n<ol>\n";
   for (const FlowStep& step : flow.steps) {
     html += "<li><div class=\"box\">" + html_text(step.text) + "</div>";
-    if (!step.leaving.empty()) html += "<ul class=\"leaving\">";
-    for (const std::string& one : step.leaving) html += "<li>" + html_text(one) + "</li>";
-    html += step.leaving.empty() ? "</li>\n" : "</ul></li>\n";
+    if (!step.losses.empty()) html += "<ul class=\"leaving\">";
+    for (const std::string& loss : step.losses) html += "<li>" + html_text(loss) + "</li>";
+    html += step.losses.empty() ? "</li>\n" : "</ul></li>\n";
   }
   return html + fmt::format("</ol>\n<figcaption><b>Figure {}.</b> {}</figcaption>\n</figure>\n",
-                            writer.next(&Numbers::figures),
+                            writer.next_number(&Numbers::figures),
                             html_text(stamped(flow.caption, writer.document.stamp)));
 }
 
 std::string blocks_html(Writer& writer, const std::vector<Block>& blocks) {
   std::string html;
   for (const Block& block : blocks) {
-    html += std::visit([&](const auto& one) { return html_of(writer, one); }, block);
+    html += std::visit([&](const auto& content) { return html_of(writer, content); }, block);
   }
   return html;
 }
 
-/// "2 tables, 1 figure"; what has neither is "notes".
+/// "2 tables, 1 figure", or "notes" without tables and figures
 std::string contents_of(const std::vector<Block>& blocks) {
   int tables = 0;
   int figures = 0;
@@ -237,9 +232,9 @@ std::string contents_of(const std::vector<Block>& blocks) {
 }
 
 std::string folded_html(Writer& writer, const Section& section, const std::string& title) {
-  if (section.more.empty()) return "";
+  if (section.folded_blocks.empty()) return "";
   writer.is_folding = true;
-  const std::string html = blocks_html(writer, section.more);
+  const std::string html = blocks_html(writer, section.folded_blocks);
   writer.is_folding = false;
   return "<details class=\"more\">\n<summary>" + title + "</summary>\n" + html + "</details>\n";
 }
@@ -248,12 +243,13 @@ std::string section_html(Writer& writer, const Section& section) {
   return fmt::format("<section aria-labelledby=\"{0}\">\n<h2 id=\"{0}\">{1}</h2>\n", section.id,
                      html_text(section.title)) +
          blocks_html(writer, section.blocks) +
-         folded_html(writer, section, "More: " + contents_of(section.more)) + "</section>\n";
+         folded_html(writer, section, "More: " + contents_of(section.folded_blocks)) +
+         "</section>\n";
 }
 
 constexpr const char* kFurther = "Further analyses";
 
-/// The sections that are folded as a whole, under one heading.
+/// The completely folded sections, under one heading.
 std::string further_html(Writer& writer) {
   std::string html;
   for (const Section& section : writer.document.sections) {
@@ -274,7 +270,7 @@ std::string references_html(const Writer& writer) {
   std::string html =
       "<section aria-labelledby=\"references\">\n<h2 id=\"references\">References</h2>\n"
       "<ol class=\"references\">\n";
-  const std::size_t in_print = references_in_print(writer.document);
+  const std::size_t in_print = printed_reference_count(writer.document);
   const std::size_t count = writer.references.size();
   for (std::size_t i = 0; i < count; ++i) {
     if (i == in_print) {
@@ -313,7 +309,7 @@ std::string header_html(const Writer& writer) {
   return html + "<h1>" + html_text(writer.document.title) + "</h1>\n</header>\n";
 }
 
-/// The sections, with the table of contents after the first, so that the result is visible at once.
+/// The table of contents is after the first section, so that the result is visible at once.
 std::string main_html(Writer& writer) {
   std::string html = "<main id=\"main\" tabindex=\"-1\">\n";
   std::string contents = navigation(writer);

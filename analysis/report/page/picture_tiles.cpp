@@ -12,11 +12,11 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// Pixels of style sheets.
+/// Lengths in CSS pixels.
 constexpr int kGap_px = 4;
 constexpr int kLabels_px = 76;
 constexpr int kHead_px = 22;
-constexpr double kCentimetresOfPixel = 2.54 / 96.0;
+constexpr double kCmPerPixel = 2.54 / 96.0;
 constexpr std::size_t kLabelColumns = 12;
 constexpr double kTileText_px = 32.0 / 3.0;  ///< 8 points, as in the other figures
 
@@ -37,11 +37,11 @@ std::string svg_of_tiles(const Tiles& tiles, const std::string& alt) {
   const int height = kHead_px + step * static_cast<int>(tiles.cells.size());
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.2f}cm\" height=\"{:.2f}cm\" "
-      "viewBox=\"0 "
-      "0 {} {}\" role=\"img\" aria-label=\"{}\" font-family=\"Arial,Helvetica,sans-serif\" "
-      "font-size=\"{:.2f}\" fill=\"{}\">\n<rect width=\"{}\" height=\"{}\" fill=\"#ffffff\"/>\n",
-      width * kCentimetresOfPixel, height * kCentimetresOfPixel, width, height, xml_escaped(alt),
-      kTileText_px, kInk, width, height);
+      "viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\" "
+      "font-family=\"Arial,Helvetica,sans-serif\" font-size=\"{:.2f}\" fill=\"{}\">\n<rect "
+      "width=\"{}\" height=\"{}\" fill=\"#ffffff\"/>\n",
+      width * kCmPerPixel, height * kCmPerPixel, width, height, xml_escaped(alt), kTileText_px,
+      kInk, width, height);
   for (std::size_t i = 0; i < tiles.titles.size(); ++i) {
     svg += svg_text(left + step * static_cast<int>(i), kHead_px - 8, tiles.titles[i]);
   }

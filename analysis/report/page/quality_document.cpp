@@ -24,15 +24,14 @@ Table sessions_table(const SessionCounts& counts) {
   add("replaced", counts.replaced);
   add("withdrawn, data erased", counts.erased);
   table.notes = {
-      {"A session is counted once, in the first of these states: withdrawn, replaced, excluded, "
-       "its own."}};
+      {"A session that is withdrawn, replaced or excluded is counted only there, in this order."}};
   return table;
 }
 
 Table trials_table(const TrialQuality& quality) {
-  Table table{"trial-counts", "Trials", {{"what", Align::left}, {"trials"}, {"share"}}};
-  const auto add = [&](const char* name, int n, int of) {
-    const auto share = percentage(n, of);
+  Table table{"trial-counts", "Trials", {{"trials", Align::left}, {"number"}, {"share"}}};
+  const auto add = [&](const char* name, int n, int total) {
+    const auto share = percentage(n, total);
     table.rows.push_back(
         {name, std::to_string(n), share ? plain_figure(share, 1) + "%" : kNoFigure});
   };
@@ -43,11 +42,11 @@ Table trials_table(const TrialQuality& quality) {
   add("interrupted presentations, repeated or not", quality.interrupted, 0);
   add("interrupted, and not repeated yet", quality.not_repeated, quality.presented);
   add("with a trace", quality.with_trace, quality.presented);
-  add("valid by the study's rule, as far as it is in clear", quality.valid, quality.with_trace);
-  add("with servo late ticks", quality.with_overruns, quality.with_trace);
+  add("valid by the public part of the study's rule", quality.valid, quality.with_trace);
+  add("with late servo ticks", quality.with_overruns, quality.with_trace);
   table.notes = {
-      {"Shares: of presented trials; of pauses, of answers; of validity and late ticks, of trials "
-       "with a trace."}};
+      {"Shares of presented trials; for pauses, of answered trials; for validity and late ticks, "
+       "of trials with a trace."}};
   return table;
 }
 
@@ -61,10 +60,10 @@ Table answers_table(const Collection& collection) {
                           session.one_key ? "yes" : ""});
   }
   table.notes = {
-      {"One key: 95% of 20 answers or more came from one key, although the right answers are "
-       "spread over all keys. Nobody who can tell some of the textures apart answers like this. "
-       "Not evaluated for trials with several planes. Any other distribution of answers is an "
-       "outcome, and blind."}};
+      {"One key: at least 95% of 20 or more answers came from one key, although the right answers "
+       "are spread over all keys. Nobody who can distinguish some of the textures answers like "
+       "this. Not evaluated for trials with several planes. All other properties of answers are "
+       "outcomes, and stay blind."}};
   return table;
 }
 
@@ -83,9 +82,8 @@ Table hands_table(const Collection& collection) {
   const study::ValidityRule& rule = collection.prescription.validity;
   table.notes = {{fmt::format(
       "Contact: less than {} s at the plane, at most 3 mm above it. Path: less than {} mm along "
-      "it. "
-      "Force: a mean push below {} N or above {} N. Speed: a mean below {} or above {} mm/s. "
-      "Somebody who does not press or does not move shows here; what was presented does not.",
+      "it. Force: mean below {} N or above {} N. Speed: mean below {} or above {} mm/s. These "
+      "numbers show who did not press or move, but not what was presented.",
       rule.min_contact_s, rule.min_path_mm, rule.min_median_n, rule.max_median_n,
       study::kMinStrokeMmS, study::kMaxStrokeMmS)}};
   return table;
@@ -97,10 +95,10 @@ Section servo_section(const QualityReport& report) {
     section.blocks.emplace_back(std::move(*servo));
   } else {
     section.blocks.emplace_back(
-        Cited{"No trial ran in real time, so servo timing is unknown.", {}});
+        CitedText{"No trial ran in real time, so servo timing is unknown.", {}});
   }
   if (report.servo) {
-    section.blocks.emplace_back(Cited{
+    section.blocks.emplace_back(CitedText{
         "Scheduling of servo threads: " + listed(report.servo->scheduling, " and ") + ".", {}});
   }
   return section;

@@ -37,7 +37,6 @@ bool is_interim(const Provenance& provenance) {
   return (state.unblinded && !state.closed) || state.question;
 }
 
-/// Warnings at the top of the page.
 template <typename Report>
 std::vector<std::string> banners_of(const Report& report, const Provenance& provenance) {
   std::vector<std::string> banners;
@@ -45,8 +44,8 @@ std::vector<std::string> banners_of(const Report& report, const Provenance& prov
     const std::string device = simulated_on(simulated_devices(report.collection));
     if (!device.empty()) banners.push_back(device);
     banners.emplace_back(
-        "SIMULATED: these numbers come from simulated participants. They say what a model of a "
-        "hand and of a sense of touch does, not what people do.");
+        "SIMULATED: these numbers come from simulated participants. They describe a model of a "
+        "hand and of the sense of touch, not people.");
   }
   if (report.pilot) {
     banners.emplace_back("PILOT: do not pool with the study's data or report as its result.");
@@ -59,12 +58,11 @@ std::vector<std::string> banners_of(const Report& report, const Provenance& prov
 void add_interim_banner(const Provenance& provenance, std::vector<std::string>& banners) {
   if (provenance.state.question) {
     banners.emplace_back(
-        "INTERIM LOOK at the registered question: it alone is shown, and it alone may decide "
-        "whether collecting ends here. Everything else stays blind until the study is closed.");
+        "INTERIM LOOK at the registered question: only its answer is shown, and only it may decide "
+        "whether collection ends here. Everything else stays blind until the study is closed.");
   } else if (is_interim(provenance)) {
     banners.emplace_back(
-        "INTERIM LOOK: the study is still open. What it shows must not decide when the study "
-        "ends.");
+        "INTERIM LOOK: the study is still open. These results must not decide when it ends.");
   }
 }
 
@@ -98,41 +96,40 @@ void add_evidence(const Provenance& provenance, Definitions& header) {
         fmt::format("{} (event {})", to_hex(provenance.head.hash), provenance.head.length)},
        {"program", "touchtrial " + provenance.program_version}});
   if (!provenance.head_summary.empty()) {
-    entries.emplace_back("its end is vouched for", provenance.head_summary);
+    entries.emplace_back("head check", provenance.head_summary);
   }
-  if (!provenance.texts.empty()) entries.emplace_back("what participants read", provenance.texts);
+  if (!provenance.texts.empty()) entries.emplace_back("participants' texts", provenance.texts);
 }
 
-/// Puts a picture below the sentences of a section or subheading.
-/// \return whether it belongs there
-bool place(const Picture& picture, Section& section) {
-  std::vector<Block>& blocks = section.is_folded() ? section.more : section.blocks;
-  auto at = blocks.begin();
+/// Inserts a picture below the sentences of its section or subheading.
+/// \return whether the picture belongs to this section
+bool insert_picture(const Picture& picture, Section& section) {
+  std::vector<Block>& blocks = section.is_folded() ? section.folded_blocks : section.blocks;
+  auto position = blocks.begin();
   if (section.id != picture.section) {
-    at = std::ranges::find_if(blocks, [&](const Block& one) {
-      const auto* heading = std::get_if<Subheading>(&one);
+    position = std::ranges::find_if(blocks, [&](const Block& block) {
+      const auto* heading = std::get_if<Subheading>(&block);
       return heading != nullptr && heading->id == picture.section;
     });
-    if (at == blocks.end()) return false;
-    ++at;
+    if (position == blocks.end()) return false;
+    ++position;
   }
-  at = std::find_if(at, blocks.end(), [](const Block& one) {
-    return !std::holds_alternative<Cited>(one) && !std::holds_alternative<Picture>(one);
+  position = std::find_if(position, blocks.end(), [](const Block& block) {
+    return !std::holds_alternative<CitedText>(block) && !std::holds_alternative<Picture>(block);
   });
-  blocks.insert(at, picture);
+  blocks.insert(position, picture);
   return true;
 }
 
-void place(const Picture& picture, std::vector<Section>& sections) {
+void insert_picture(const Picture& picture, std::vector<Section>& sections) {
   if (picture.section.empty()) return;
-  const bool placed =
-      std::ranges::any_of(sections, [&](Section& section) { return place(picture, section); });
-  if (!placed) sections.front().more.emplace_back(picture);
+  const bool is_placed = std::ranges::any_of(
+      sections, [&](Section& section) { return insert_picture(picture, section); });
+  if (!is_placed) sections.front().folded_blocks.emplace_back(picture);
 }
 
-/// The pictures. If none belongs to the result, the first one of a section that is not folded moves
-/// there.
-Pictures with_leading(Pictures pictures, const std::vector<Section>& sections) {
+/// If no picture belongs to the result, moves the first one of an unfolded section there.
+Pictures with_result_picture(Pictures pictures, const std::vector<Section>& sections) {
   if (std::ranges::find(pictures, "result", &Picture::section) != pictures.end()) return pictures;
   const auto is_shown = [&](const std::string& id) {
     return std::ranges::any_of(sections, [&](const Section& section) {
@@ -144,8 +141,8 @@ Pictures with_leading(Pictures pictures, const std::vector<Section>& sections) {
   return pictures;
 }
 
-/// What the result is about: how many people, on which device, and when.
-Cited facts_sentence(const StudyHead& head) {
+/// Participants, trials, dates and device.
+CitedText facts_sentence(const StudyHead& head) {
   std::string text = fmt::format("{}, {}", counted(head.participants, "participant"),
                                  counted(head.trials, "trial"));
   if (const auto dates = dates_of(head.collection.sessions)) {
@@ -162,29 +159,29 @@ Cited facts_sentence(const StudyHead& head) {
 }
 
 /// The most serious warnings come first; further ones are folded.
-constexpr std::size_t kShownWarnings = 4;
+constexpr std::size_t kMaxUnfoldedWarnings = 4;
 
-void add_warnings(const std::vector<std::string>& warnings, Section& section, std::size_t at) {
-  const std::size_t shown = std::min(warnings.size(), kShownWarnings);
-  const auto end = warnings.begin() + static_cast<std::ptrdiff_t>(shown);
-  if (shown > 0) {
-    section.blocks.insert(section.blocks.begin() + static_cast<std::ptrdiff_t>(at),
+void add_warnings(const std::vector<std::string>& warnings, Section& section, std::size_t index) {
+  const std::size_t unfolded_count = std::min(warnings.size(), kMaxUnfoldedWarnings);
+  const auto end = warnings.begin() + static_cast<std::ptrdiff_t>(unfolded_count);
+  if (unfolded_count > 0) {
+    section.blocks.insert(section.blocks.begin() + static_cast<std::ptrdiff_t>(index),
                           Warnings{{warnings.begin(), end}, "What to bear in mind:"});
   }
   if (end != warnings.end()) {
-    section.more.insert(section.more.begin(), Warnings{{end, warnings.end()}, "Further points:"});
+    section.folded_blocks.insert(section.folded_blocks.begin(),
+                                 Warnings{{end, warnings.end()}, "Further points:"});
   }
 }
 
-/// The first section: the verdict, the protocol's sentences, what it is about, what to bear in
-/// mind, and then tables.
+/// The first section: verdict, the protocol's sentences, facts, warnings, and tables.
 Section result_section(const StudyHead& head, Section headline) {
-  std::vector<Block> own = std::move(headline.blocks);
+  std::vector<Block> blocks = std::move(headline.blocks);
   headline.blocks.clear();
   add_verdict(head, headline);
   const auto first_table = std::ranges::find_if(
-      own, [](const Block& one) { return std::holds_alternative<Table>(one); });
-  headline.blocks.insert(headline.blocks.end(), own.begin(), first_table);
+      blocks, [](const Block& block) { return std::holds_alternative<Table>(block); });
+  headline.blocks.insert(headline.blocks.end(), blocks.begin(), first_table);
   headline.blocks.emplace_back(facts_sentence(head));
   if (!head.departures.empty()) {
     headline.blocks.emplace_back(Warnings{head.departures, head.registration.analysis
@@ -192,8 +189,9 @@ Section result_section(const StudyHead& head, Section headline) {
                                                                : "Departures from the plan:"});
   }
   add_warnings(head.warnings, headline, headline.blocks.size());
-  headline.blocks.insert(headline.blocks.end(), first_table, own.end());
-  std::ranges::move(registration_blocks(head.registration), std::back_inserter(headline.more));
+  headline.blocks.insert(headline.blocks.end(), first_table, blocks.end());
+  std::ranges::move(registration_blocks(head.registration),
+                    std::back_inserter(headline.folded_blocks));
   return headline;
 }
 
@@ -211,7 +209,8 @@ Provenance provenance_of(const record::StudyStore& store, const std::string& dat
 
 std::string unverified_banner() {
   return std::string(study::kUnverifiedDevice) +
-         ": sessions ran on a device without a valid acceptance. What was felt is not known.";
+         ": sessions ran on a device without a valid acceptance certificate. What was felt is "
+         "unknown.";
 }
 
 std::string further_stamp(bool pilot, const Provenance& provenance) {
@@ -235,9 +234,10 @@ Document framed_document(const StudyHead& head, Section headline, std::vector<Se
   std::ranges::move(results, std::back_inserter(sections));
   sections.push_back(participants_section(head.collection, &head));
   sections.push_back(questionnaire_section(head));
-  // Methods come here, the last before what is folded, the references and the header.
-  note_unadjusted(head.looks, sections);
-  for (const Picture& picture : with_leading(pictures, sections)) place(picture, sections);
+  add_unadjusted_notes(head.looks, sections);
+  for (const Picture& picture : with_result_picture(pictures, sections)) {
+    insert_picture(picture, sections);
+  };
   for (Section& section : sections) {
     if (!all_blocks(section).empty()) document.sections.push_back(std::move(section));
   }
@@ -252,7 +252,7 @@ Document quality_document(const QualityReport& report, const Provenance& provena
   }
   if (report.visual) {
     document.banners.emplace_back(
-        "Seen on a screen, not felt: never to be pooled with what was felt.");
+        "Textures were seen on a screen, not felt: do not pool with data from touch.");
   }
   add_evidence(provenance, document.header);
   document.sections = quality_sections(report);

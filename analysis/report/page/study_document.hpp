@@ -10,15 +10,15 @@
 
 namespace touchtrial::analysis {
 
-/// Identifies the database from which a report was made.
+/// The database from which a report was made.
 struct Provenance {
-  std::string database;         ///< file name, without its folder
-  std::string program_version;  ///< version of the program that made the report
+  std::string database;         ///< file name without folder
+  std::string program_version;  ///< of the program that made the report
   std::string seal;             ///< commitment made before trial 1, hexadecimal
-  record::ChainHead head;       ///< head of the file's chain
+  record::ChainHead head;       ///< of the file's chain
   record::StudyState state;
   std::string texts{};         ///< note on the participants' texts; may be empty
-  bool unverified = false;     ///< as any_ran_unverified
+  bool unverified = false;     ///< any_ran_unverified
   std::string head_summary{};  ///< HeadCheck::words; empty: no head file was compared
   bool is_incomplete = false;  ///< the database lacks events that a head file records
 };
@@ -30,27 +30,25 @@ struct Provenance {
 /// The warning of a report with sessions on a device without a valid certificate.
 [[nodiscard]] std::string unverified_banner();
 
-/// The stamp that follows SIMULATED on every table and figure: those of PILOT, INTERIM LOOK and
-/// UNVERIFIED DEVICE that hold, or empty.
+/// The stamp after SIMULATED on tables and figures: whichever of PILOT, INTERIM LOOK and UNVERIFIED
+/// DEVICE apply; may be empty.
 [[nodiscard]] std::string further_stamp(bool pilot, const Provenance& provenance);
 
-/// Pictures for a report.
 using Pictures = std::vector<Picture>;
 
-/// The frame of every protocol's report: title, banners, header, warnings and participants.
-///
-/// \param headline  the result in a few sentences, then tables; stands first. Before it comes the
-///   verdict on the registered question; before its tables, what the result is about and what to
-///   bear in mind
-/// \param results  the protocol's other sections, in their order; empty ones are left out
-/// \param pictures  in their order; each follows the sentences of its section, or of its
-///   subheading. If none belongs to the result, the first one does. One whose section is none of
-///   these is folded under the result, and one without a section is left out.
+/// Adds the common parts of every report: title, banners, header, verdict, warnings and
+/// participants.
+/// \param headline  the result in a few sentences, then tables; the first section. The verdict is
+///   inserted before it, the facts and warnings before its tables
+/// \param results  the protocol's other sections; empty ones are omitted
+/// \param pictures  placed below the sentences of their section or subheading. If none belongs to
+///   the result, the first one moves there. Pictures with an unknown section are folded under the
+///   result; those without a section are omitted
 [[nodiscard]] Document framed_document(const StudyHead& head, Section headline,
                                        std::vector<Section> results, const Provenance& provenance,
                                        const Pictures& pictures = {});
 
-/// The report before unblinding: how data collection proceeds, and nothing about outcomes.
+/// The report before unblinding: data collection without outcomes.
 [[nodiscard]] Document quality_document(const QualityReport& report, const Provenance& provenance);
 
 }  // namespace touchtrial::analysis

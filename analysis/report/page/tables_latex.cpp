@@ -8,23 +8,17 @@
 namespace touchtrial::analysis {
 namespace {
 
-constexpr std::size_t kLongRows = 40;  ///< longer tables do not fit on a page
-constexpr std::size_t kWideCell = 40;  ///< longer texts are broken into lines
+constexpr std::size_t kMaxFloatRows = 40;   ///< longer tables do not fit on a page
+constexpr std::size_t kMaxCellLength = 40;  ///< longer texts are broken into lines
 
-std::string header_of(const std::string& packages) {
-  return "% The preamble needs: " + packages + "\n";
-}
-
-constexpr const char* kPackages =
-    "\\usepackage[T1]{fontenc} \\usepackage[utf8]{inputenc} "
-    "\\usepackage{textcomp,booktabs,longtable}";
+constexpr const char* kHeader =
+    "% The preamble needs: \\usepackage[T1]{fontenc} \\usepackage[utf8]{inputenc} "
+    "\\usepackage{textcomp,booktabs,longtable}\n";
 
 std::string column_letter(const Table& table, std::size_t column) {
   std::size_t longest = 0;
-  for (const std::vector<Cell>& row : table.rows) {
-    longest = std::max(longest, row[column].text.size());
-  }
-  if (longest > kWideCell) return "p{0.4\\linewidth}";
+  for (const auto& row : table.rows) longest = std::max(longest, row[column].text.size());
+  if (longest > kMaxCellLength) return "p{0.4\\linewidth}";
   return table.columns[column].align == Align::left ? "l" : "r";
 }
 
@@ -54,8 +48,8 @@ std::string rows_latex(const Table& table) {
   return lines;
 }
 
-/// Where references stand: a table in a file of its own has them beneath it.
-enum class References { elsewhere, beneath };
+/// Where references are: beneath a table in a separate file, else at the end of the document.
+enum class ReferencePlacement { document_end, beneath };
 
 std::string references_beneath(const std::vector<Source>& references) {
   std::string text;
@@ -67,13 +61,13 @@ std::string references_beneath(const std::vector<Source>& references) {
 }
 
 std::string notes_latex(const Table& table, const std::vector<Source>& references,
-                        References where) {
+                        ReferencePlacement placement) {
   std::string text;
-  for (const Cited& note : table.notes) {
+  for (const CitedText& note : table.notes) {
     text += "\\par\\smallskip\\noindent " + latex_escaped(note.text) +
             latex_escaped(citation_mark(note, references)) + "\n";
   }
-  if (where == References::beneath) text += references_beneath(references);
+  if (placement == ReferencePlacement::beneath) text += references_beneath(references);
   return text.empty()
              ? ""
              : "\\begin{minipage}{\\linewidth}\\footnotesize\n" + text + "\\end{minipage}\n";
@@ -86,31 +80,31 @@ std::string size_of(const Table& table) {
 }
 
 std::string float_latex(const Table& table, const std::string& caption,
-                        const std::vector<Source>& references, References where) {
+                        const std::vector<Source>& references, ReferencePlacement placement) {
   return fmt::format(
              "\\begin{{table}}[htbp]\n\\centering{}\n\\caption{{{}}}\n\\label{{tab:{}}}\n"
              "\\begin{{tabular}}{{@{{}}{}@{{}}}}\n\\toprule\n",
              size_of(table), caption, table.id, column_letters(table)) +
          titles_latex(table) + "\\midrule\n" + rows_latex(table) +
-         "\\bottomrule\n\\end{tabular}\n\n" + notes_latex(table, references, where) +
+         "\\bottomrule\n\\end{tabular}\n\n" + notes_latex(table, references, placement) +
          "\\end{table}\n";
 }
 
-std::string long_latex(const Table& table, const std::string& caption,
-                       const std::vector<Source>& references, References where) {
+std::string longtable_latex(const Table& table, const std::string& caption,
+                            const std::vector<Source>& references, ReferencePlacement placement) {
   return fmt::format(
              "{{{}\n\\begin{{longtable}}{{@{{}}{}@{{}}}}\n\\caption{{{}}}\\label{{tab:{}}}\\\\\n"
              "\\toprule\n",
              size_of(table), column_letters(table), caption, table.id) +
          titles_latex(table) + "\\midrule\n\\endhead\n\\bottomrule\n\\endfoot\n" +
-         rows_latex(table) + "\\end{longtable}}\n" + notes_latex(table, references, where);
+         rows_latex(table) + "\\end{longtable}}\n" + notes_latex(table, references, placement);
 }
 
-std::string one_table(const Table& table, const std::string& stamp,
-                      const std::vector<Source>& references, References where) {
+std::string single_table(const Table& table, const std::string& stamp,
+                         const std::vector<Source>& references, ReferencePlacement placement) {
   const std::string caption = latex_escaped(stamped(table.caption, stamp));
-  return table.rows.size() > kLongRows ? long_latex(table, caption, references, where)
-                                       : float_latex(table, caption, references, where);
+  return table.rows.size() > kMaxFloatRows ? longtable_latex(table, caption, references, placement)
+                                           : float_latex(table, caption, references, placement);
 }
 
 std::string references_latex(const std::vector<Source>& references) {
@@ -122,7 +116,7 @@ std::string references_latex(const std::vector<Source>& references) {
   return text + "\\end{enumerate}\n";
 }
 
-/// The references again as a comment, for authors who replace the printed list by their own.
+/// The references as a comment, for authors who replace the printed list.
 std::string references_as_comment(const std::vector<Source>& references) {
   std::string text;
   for (std::size_t i = 0; i < references.size(); ++i) {
@@ -134,7 +128,8 @@ std::string references_as_comment(const std::vector<Source>& references) {
 std::string warnings_latex(const Warnings& warnings) {
   if (warnings.sentences.empty()) return "";
   std::string text = "\\begin{itemize}\n";
-  for (const std::string& one : warnings.sentences) text += "\\item " + latex_escaped(one) + "\n";
+  for (const std::string& sentence : warnings.sentences)
+    text += "\\item " + latex_escaped(sentence) + "\n";
   return text + "\\end{itemize}\n";
 }
 
@@ -142,23 +137,24 @@ std::string warnings_latex(const Warnings& warnings) {
 
 std::string table_latex(const Table& table, const std::string& stamp) {
   const std::vector<Source> references = references_of(table);
-  return header_of(kPackages) + references_as_comment(references) +
-         one_table(table, stamp, references, References::beneath);
+  return kHeader + references_as_comment(references) +
+         single_table(table, stamp, references, ReferencePlacement::beneath);
 }
 
 std::string tables_latex(const Document& document) {
-  const Document alone = tables_alone(document);
-  const std::vector<Source> references = references_of(alone);
-  std::string text = header_of(kPackages);
-  for (const std::string& banner : alone.banners) {
+  const Document tables = tables_only(document);
+  const std::vector<Source> references = references_of(tables);
+  std::string text = kHeader;
+  for (const std::string& banner : tables.banners) {
     text += "\\noindent\\textbf{" + latex_escaped(banner) + "}\\par\\medskip\n";
   }
-  for (const Section& section : alone.sections) {
+  for (const Section& section : tables.sections) {
     text += "\\section*{" + latex_escaped(section.title) + "}\n";
     for (const Block& block : section.blocks) {
       const auto* table = std::get_if<Table>(&block);
-      text += table != nullptr ? one_table(*table, alone.stamp, references, References::elsewhere)
-                               : warnings_latex(std::get<Warnings>(block));
+      text += table != nullptr
+                  ? single_table(*table, tables.stamp, references, ReferencePlacement::document_end)
+                  : warnings_latex(std::get<Warnings>(block));
     }
     text += "\\clearpage\n";
   }

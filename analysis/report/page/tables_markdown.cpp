@@ -24,12 +24,11 @@ std::string row_of(const std::vector<Cell>& row) {
   return line_of(cells);
 }
 
-/// Columns of a paragraph in a page; the paragraphs of single tables are lines.
 constexpr std::size_t kMarkdownWidth = 110;
-constexpr std::size_t kWhole = std::string::npos;
+constexpr std::size_t kUnwrapped = std::string::npos;
 
 std::string table_text(const Table& table, const std::string& stamp,
-                       const std::vector<Source>& references, std::size_t width = kWhole) {
+                       const std::vector<Source>& references, std::size_t width = kUnwrapped) {
   std::string text =
       wrapped("", "**" + markdown_escaped(stamped(table.caption, stamp)) + "**", width) + '\n';
   std::vector<std::string> titles;
@@ -40,7 +39,7 @@ std::string table_text(const Table& table, const std::string& stamp,
   }
   text += line_of(titles) + line_of(rules);
   for (const std::vector<Cell>& row : table.rows) text += row_of(row);
-  for (const Cited& note : table.notes) {
+  for (const CitedText& note : table.notes) {
     text +=
         '\n' +
         wrapped("", markdown_escaped(note.text) + markdown_escaped(citation_mark(note, references)),
@@ -49,7 +48,7 @@ std::string table_text(const Table& table, const std::string& stamp,
   return text;
 }
 
-std::string references_text(const std::vector<Source>& references, std::size_t width = kWhole) {
+std::string references_text(const std::vector<Source>& references, std::size_t width = kUnwrapped) {
   std::string text;
   for (std::size_t i = 0; i < references.size(); ++i) {
     text += wrapped(fmt::format("{}. ", i + 1),
@@ -60,17 +59,18 @@ std::string references_text(const std::vector<Source>& references, std::size_t w
 
 std::string warnings_text(const Warnings& warnings) {
   std::string text;
-  for (const std::string& one : warnings.sentences) text += "- " + markdown_escaped(one) + '\n';
+  for (const std::string& sentence : warnings.sentences)
+    text += "- " + markdown_escaped(sentence) + '\n';
   return text + '\n';
 }
 
-/// The blocks of a document in Markdown, each with an empty line after it.
+/// Blocks in Markdown, each followed by an empty line.
 struct MarkdownWriter {
   const Document& document;
   const std::string& pictures;
   std::vector<Source> references;
 
-  [[nodiscard]] std::string operator()(const Cited& paragraph) const {
+  [[nodiscard]] std::string operator()(const CitedText& paragraph) const {
     return wrapped("",
                    markdown_escaped(paragraph.text) +
                        markdown_escaped(citation_mark(paragraph, references)),
@@ -81,9 +81,9 @@ struct MarkdownWriter {
     return table_text(table, document.stamp, references, kMarkdownWidth) + '\n';
   }
   [[nodiscard]] std::string operator()(const Picture& picture) const {
-    if (picture.svg.empty()) return (*this)(Cited{"Not drawn: " + picture.alt});
+    if (picture.svg.empty()) return (*this)(CitedText{"Not drawn: " + picture.alt});
     return "![" + markdown_escaped(picture.alt) + "](" + pictures + '/' + picture.id + ".svg)\n\n" +
-           (*this)(Cited{stamped(picture.caption, document.stamp)});
+           (*this)(CitedText{stamped(picture.caption, document.stamp)});
   }
   [[nodiscard]] std::string operator()(const Subheading& heading) const {
     return "### " + markdown_escaped(heading.title) + "\n\n";
@@ -102,9 +102,9 @@ struct MarkdownWriter {
     std::string text;
     for (const FlowStep& step : flow.steps) {
       text += "- " + markdown_escaped(step.text) + '\n';
-      for (const std::string& one : step.leaving) text += "  - " + markdown_escaped(one) + '\n';
+      for (const std::string& loss : step.losses) text += "  - " + markdown_escaped(loss) + '\n';
     }
-    return text + '\n' + (*this)(Cited{stamped(flow.caption, document.stamp)});
+    return text + '\n' + (*this)(CitedText{stamped(flow.caption, document.stamp)});
   }
 };
 

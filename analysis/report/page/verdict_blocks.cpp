@@ -13,38 +13,26 @@
 namespace touchtrial::analysis {
 namespace {
 
-bool is_difference(const PrimaryResult& primary) {
-  return primary.estimand == study::Estimand::difference;
-}
-
-bool is_of_thresholds(const PrimaryResult& primary) {
-  return study::is_of_thresholds(primary.estimand);
-}
-
-bool is_estimate(const PrimaryResult& primary) {
-  return primary.estimand == study::Estimand::mean_threshold;
-}
-
-/// In dB: a mean without a sign unless it is negative, a difference with its sign.
+/// A mean has a sign only if it is negative, a difference always.
 std::string decibels(const PrimaryResult& primary, std::optional<double> value) {
-  return is_estimate(primary) ? plain_figure(value, 1) : signed_plain_figure(value, 1);
+  return primary.is_estimate() ? plain_figure(value, 1) : signed_plain_figure(value, 1);
 }
 
-/// A value of the estimand without its unit, except for the % of a share.
+/// A value of the estimand without a unit, except the % of a share.
 std::string bare_figure(const PrimaryResult& primary, std::optional<double> value) {
-  if (is_of_thresholds(primary)) return decibels(primary, value);
-  return is_difference(primary) ? points_figure(value) : share_figure(value);
+  if (primary.has_thresholds()) return decibels(primary, value);
+  return primary.is_difference() ? points_figure(value) : share_figure(value);
 }
 
 std::string range_figure(const PrimaryResult& primary, const std::optional<Interval>& interval) {
-  return is_of_thresholds(primary) ? plain_range(interval, 1) : share_range(interval);
+  return primary.has_thresholds() ? plain_range(interval, 1) : share_range(interval);
 }
 
 /// A value of the estimand: "77.0%", "+3.2 points", or "−18.3 dB".
 std::string estimand_figure(const PrimaryResult& primary, std::optional<double> value) {
   if (!value) return kNoFigure;
-  if (is_of_thresholds(primary)) return decibels(primary, value) + " dB";
-  return is_difference(primary) ? points_figure(value) + " points" : share_figure(value);
+  if (primary.has_thresholds()) return decibels(primary, value) + " dB";
+  return primary.is_difference() ? points_figure(value) + " points" : share_figure(value);
 }
 
 /// "95%", and never "100%".
@@ -68,7 +56,6 @@ std::string people_of(const PrimaryResult& primary, const StudyCourse& course) {
                      course.completed);
 }
 
-/// The verdict in a word or two.
 std::string lead_of(Verdict verdict) {
   const bool is_decided = verdict == Verdict::supported || verdict == Verdict::not_supported;
   if (verdict == Verdict::estimated) return "Estimated as registered.";
@@ -79,13 +66,13 @@ std::string lead_of(Verdict verdict) {
 std::string statistic_phrase(const PrimaryResult& primary) {
   if (!primary.statistic) return "";
   return fmt::format("; {}, {} = {} {}", t_phrase(*primary.statistic),
-                     is_difference(primary) || is_of_thresholds(primary) ? "d_z" : "d",
+                     primary.is_difference() || primary.has_thresholds() ? "d_z" : "d",
                      plain_figure(primary.statistic->d, 2),
                      plain_range(primary.statistic->interval, 2));
 }
 
-/// The verdict, the estimate with its interval and test, and why the verdict is what it is.
-Cited verdict_sentence(const StudyHead& head) {
+/// The verdict, the estimate with interval and test, and the reason for the verdict.
+CitedText verdict_sentence(const StudyHead& head) {
   const PrimaryResult& primary = *head.primary;
   const PrimaryChoice& choice = primary.registered();
   std::string text =
@@ -93,13 +80,13 @@ Cited verdict_sentence(const StudyHead& head) {
   if (!choice.pair.empty()) text += " (" + choice.pair + ")";
   if (choice.interval) {
     text += fmt::format(", {} {} {}", level_words(primary.interval_level),
-                        is_of_thresholds(primary) ? "interval" : "t interval",
+                        primary.has_thresholds() ? "interval" : "t interval",
                         range_figure(primary, choice.interval));
   }
   text += " (" + people_of(primary, head.course) + ")";
-  if (is_estimate(primary)) {
+  if (primary.is_estimate()) {
     return {
-        text + ". " + primary.because, {Source::student, Source::tobin}, lead_of(primary.verdict)};
+        text + ". " + primary.reason, {Source::student, Source::tobin}, lead_of(primary.verdict)};
   }
   text += ". " + capitalized(primary.test);
   if (primary.p) text += ": " + p_phrase(*primary.p);
@@ -114,39 +101,38 @@ Cited verdict_sentence(const StudyHead& head) {
   }
   std::vector<Source> sources{Source::student};
   if (primary.crossover) sources = {Source::hills_armitage, Source::senn};
-  if (is_of_thresholds(primary)) sources.push_back(Source::tobin);
+  if (primary.has_thresholds()) sources.push_back(Source::tobin);
   if (primary.statistic) sources.push_back(Source::cumming_finch);
-  return {text + ". " + primary.because, std::move(sources), lead_of(primary.verdict)};
+  return {text + ". " + primary.reason, std::move(sources), lead_of(primary.verdict)};
 }
 
-bool are_same(const PrimaryChoice& a, const PrimaryChoice& b) {
-  const auto ends = [](const PrimaryChoice& one) {
-    return one.interval ? std::optional(std::pair(one.interval->low, one.interval->high))
-                        : std::nullopt;
+bool have_same_numbers(const PrimaryChoice& a, const PrimaryChoice& b) {
+  const auto ends = [](const PrimaryChoice& choice) {
+    return choice.interval ? std::optional(std::pair(choice.interval->low, choice.interval->high))
+                           : std::nullopt;
   };
   return a.participants == b.participants && a.trials == b.trials && a.estimate == b.estimate &&
          ends(a) == ends(b);
 }
 
-/// The choices with different numbers, each with the words of later choices that have the same
-/// numbers.
-std::vector<std::pair<PrimaryChoice, std::vector<std::string>>> different(
+/// Choices with distinct numbers, each with the words of later choices that have the same numbers.
+std::vector<std::pair<PrimaryChoice, std::vector<std::string>>> distinct_choices(
     const std::vector<PrimaryChoice>& choices) {
   std::vector<std::pair<PrimaryChoice, std::vector<std::string>>> all;
   for (const PrimaryChoice& choice : choices) {
-    const auto same =
-        std::ranges::find_if(all, [&](const auto& one) { return are_same(one.first, choice); });
-    if (same == all.end()) {
+    const auto match = std::ranges::find_if(
+        all, [&](const auto& entry) { return have_same_numbers(entry.first, choice); });
+    if (match == all.end()) {
       all.emplace_back(choice, std::vector<std::string>{});
     } else {
-      same->second.push_back(choice.words);
+      match->second.push_back(choice.words);
     }
   }
   return all;
 }
 
 /// Period effect and permutation check of a crossover comparison.
-Cited crossover_sentence(const PrimaryResult& primary, const CrossoverEstimate& crossover) {
+CitedText crossover_sentence(const PrimaryResult& primary, const CrossoverEstimate& crossover) {
   std::string text =
       fmt::format("{} participants had the first method first, {} had the second first",
                   crossover.first_first, crossover.second_first);
@@ -167,28 +153,28 @@ Cited crossover_sentence(const PrimaryResult& primary, const CrossoverEstimate& 
           {Source::senn, Source::phipson_smyth}};
 }
 
-/// Rows for the first choice with stations as strata, if the study has several.
+/// Adds rows for the first choice with stations as strata, if the study has several stations.
 void add_stations(const PrimaryResult& primary, Table& table) {
   if (!primary.stations) return;
   const StratifiedMean& stations = *primary.stations;
   const PrimaryChoice& choice = primary.registered();
-  const auto add = [&](const std::string& what, double mean,
+  const auto add = [&](const std::string& title, double mean,
                        const std::optional<Interval>& interval) {
-    table.rows.push_back({what, std::to_string(choice.participants), std::to_string(choice.trials),
-                          is_difference(primary) ? points_figure(mean) : share_figure(mean),
+    table.rows.push_back({title, std::to_string(choice.participants), std::to_string(choice.trials),
+                          primary.is_difference() ? points_figure(mean) : share_figure(mean),
                           share_range(interval), kNoFigure});
   };
   add(fmt::format("first row, {} stations as fixed strata", stations.strata), stations.mean,
       stations.interval);
   if (stations.random) {
-    add(fmt::format("first row, {} stations as a sample of others", stations.strata),
+    add(fmt::format("first row, {} stations as a random sample", stations.strata),
         stations.random->mean, stations.random->interval);
   }
 }
 
-Cited note_of(const StratifiedMean& stations) {
+CitedText note_of(const StratifiedMean& stations) {
   std::string text =
-      "Fixed strata: for these stations, from the spread between participants of one station.";
+      "Fixed strata: for these stations, from the spread of participants within stations.";
   if (!stations.random) {
     return {
         text + fmt::format(" With fewer than {} stations there is no inference to other stations.",
@@ -196,8 +182,8 @@ Cited note_of(const StratifiedMean& stations) {
         {Source::student}};
   }
   text += fmt::format(
-      " A sample of others: the standard deviation between stations is {} points; Hartung, Knapp, "
-      "Sidik and Jonkman's interval.",
+      " Random sample: the standard deviation between stations is {} points; "
+      "Hartung-Knapp-Sidik-Jonkman interval.",
       plain_figure(100.0 * stations.random->spread, 1));
   return {text, {Source::student, Source::paule_mandel, Source::inthout}};
 }
@@ -205,14 +191,14 @@ Cited note_of(const StratifiedMean& stations) {
 /// Column titles of the estimate and its interval.
 std::pair<std::string, std::string> estimate_titles(const PrimaryResult& primary) {
   const std::string level = level_words(primary.interval_level);
-  if (is_of_thresholds(primary)) {
-    return {is_estimate(primary) ? "mean (dB)" : "difference (dB)", level + " (dB)"};
+  if (primary.has_thresholds()) {
+    return {primary.is_estimate() ? "mean (dB)" : "difference (dB)", level + " (dB)"};
   }
-  return is_difference(primary) ? std::pair("difference (points)", "t " + level + " (points)")
-                                : std::pair("mean", "t " + level + " (%)");
+  return primary.is_difference() ? std::pair("difference (points)", "t " + level + " (points)")
+                                 : std::pair("mean", "t " + level + " (%)");
 }
 
-/// All pairwise differences of an equality.
+/// All pairwise differences of an equivalence test.
 Table pairs_table(const PrimaryResult& primary) {
   const auto [estimate, interval] = estimate_titles(primary);
   Table table{"primary-pairs",
@@ -225,8 +211,8 @@ Table pairs_table(const PrimaryResult& primary) {
                           p_figure(pair.p)});
   }
   table.notes = {
-      {"p: the larger one of two one-sided t tests, against a difference of the margin on either "
-       "side. Equality is shown only if every p is at most the level, so p values are not "
+      {"p: the larger p of two one-sided t tests, against differences of plus and minus the "
+       "margin. Equality is shown only if every p is at most the level, so p values are not "
        "adjusted.",
        {Source::student, Source::tobin}}};
   return table;
@@ -243,32 +229,33 @@ Table choices_table(const StudyHead& head) {
                {estimate_title},
                {interval_title},
                {"p"}}};
-  std::vector<Cited> repeated;
-  for (const auto& [choice, same] : different(primary.choices)) {
-    const bool first = table.rows.empty();
-    if (!same.empty()) {
-      repeated.push_back(
-          {same.size() + 1 == primary.choices.size()
+  std::vector<CitedText> repeat_notes;
+  for (const auto& [choice, same_words] : distinct_choices(primary.choices)) {
+    const bool is_first = table.rows.empty();
+    if (!same_words.empty()) {
+      repeat_notes.push_back(
+          {same_words.size() + 1 == primary.choices.size()
                ? std::string("All other selections give the same numbers: with excluded sessions, "
                              "valid trials only") +
-                     (is_of_thresholds(primary) ? "." : ", only trials with a response.")
+                     (primary.has_thresholds() ? "." : ", only trials with a response.")
                : fmt::format("The same numbers as \"{}\": {}.", choice.words,
-                             fmt::join(same, "; "))});
+                             fmt::join(same_words, "; "))});
     }
     table.rows.push_back(
         {choice.words, std::to_string(choice.participants), std::to_string(choice.trials),
-         Cell(bare_figure(primary, choice.estimate), first), range_figure(primary, choice.interval),
-         first ? p_figure(primary.p) : kNoFigure});
+         Cell(bare_figure(primary, choice.estimate), is_first),
+         range_figure(primary, choice.interval), is_first ? p_figure(primary.p) : kNoFigure});
   }
   add_stations(primary, table);
   table.notes = {
       {std::string(
            "p applies to the first row only; the other rows show how much the result depends on "
            "the selection.") +
-       (is_of_thresholds(primary) ? ""
-                                  : " Every participant has the same weight, whatever the number "
-                                    "of trials. Intervals are truncated to the possible range.")}};
-  table.notes.insert(table.notes.end(), repeated.begin(), repeated.end());
+       (primary.has_thresholds()
+            ? ""
+            : " All participants have the same weight, regardless of their "
+              "number of trials. Intervals are truncated to the possible range.")}};
+  table.notes.insert(table.notes.end(), repeat_notes.begin(), repeat_notes.end());
   if (head.course.excluded_afterwards > 0) {
     table.notes.push_back({counted(head.course.excluded_afterwards, "session") +
                            " excluded after outcomes were seen."});
@@ -279,15 +266,14 @@ Table choices_table(const StudyHead& head) {
                                ? "A mean above chance shows that some people perform above chance, "
                                  "not that everybody does."
                                : "A mean that is not shown to be above chance does not show that "
-                                 "nobody performs above chance; "
-                                 "\"Accuracy\" tests that."});
+                                 "nobody performs above chance; \"Accuracy\" tests that."});
   }
   return table;
 }
 
-/// Whether a column's title announces p values: "p", "sign-flip p", "p, Holm", "McNemar mid-p",
-/// "p of the exchange".
-bool is_of_p(const Column& column) {
+/// Whether a column has p values: "p", "sign-flip p", "p, Holm", "McNemar mid-p", "p of the
+/// exchange".
+bool has_p_values(const Column& column) {
   const std::string_view title = column.title;
   return title == "p" || title.starts_with("p, ") || title.starts_with("p of ") ||
          title.ends_with(" p") || title.ends_with("-p");
@@ -306,27 +292,27 @@ void add_verdict(const StudyHead& head, Section& section) {
   if (primary.crossover) {
     section.blocks.emplace_back(crossover_sentence(primary, *primary.crossover));
   }
-  const bool is_same = different(primary.choices).size() == 1 && !primary.stations &&
+  const bool is_same = distinct_choices(primary.choices).size() == 1 && !primary.stations &&
                        head.course.excluded_afterwards == 0;
-  (is_same ? section.more : section.blocks).emplace_back(choices_table(head));
+  (is_same ? section.folded_blocks : section.blocks).emplace_back(choices_table(head));
   if (primary.pairs.size() > 1) section.blocks.emplace_back(pairs_table(primary));
 }
 
-void note_unadjusted(const std::vector<Look>& looks, std::vector<Section>& sections) {
+void add_unadjusted_notes(const std::vector<Look>& looks, std::vector<Section>& sections) {
   const std::string words = unadjusted_words(looks);
   if (words.empty()) return;
-  const auto add_in = [&](Block& block) {
+  const auto add_words = [&](Block& block) {
     if (auto* table = std::get_if<Table>(&block)) {
-      const bool has_p = std::ranges::any_of(table->columns, is_of_p) ||
-                         std::ranges::any_of(table->notes, mentions_p, &Cited::text);
+      const bool has_p = std::ranges::any_of(table->columns, has_p_values) ||
+                         std::ranges::any_of(table->notes, mentions_p, &CitedText::text);
       if (has_p) table->notes.push_back({words});
-    } else if (auto* sentence = std::get_if<Cited>(&block)) {
+    } else if (auto* sentence = std::get_if<CitedText>(&block)) {
       if (mentions_p(sentence->text)) sentence->text += " The " + words;
     }
   };
   for (Section& section : sections) {
-    std::ranges::for_each(section.blocks, add_in);
-    std::ranges::for_each(section.more, add_in);
+    std::ranges::for_each(section.blocks, add_words);
+    std::ranges::for_each(section.folded_blocks, add_words);
   }
 }
 

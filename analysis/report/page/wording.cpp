@@ -7,7 +7,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// The number with a minus sign instead of a hyphen, or without a sign if it rounds to 0.
+/// Replaces a hyphen by a minus sign; removes it if the number rounds to 0.
 std::string typeset(const std::string& number) {
   if (number.empty() || number[0] != '-') return number;
   const bool rounds_to_zero = number.find_first_of("123456789") == std::string::npos;
@@ -30,16 +30,16 @@ std::string plain_range(const std::optional<Interval>& interval, int decimals) {
 std::string signed_plain_figure(std::optional<double> figure, int decimals) {
   if (!figure || !std::isfinite(*figure)) return kNoFigure;
   const std::string text = fmt::format("{:+.{}f}", *figure, decimals);
-  // A number that rounds to zero has no sign.
   return text.find_first_of("123456789") == std::string::npos ? text.substr(1) : typeset(text);
 }
 
-std::string quartiles_figure(const Quartiles& of, int decimals, double unit) {
+std::string quartiles_figure(const Quartiles& quartiles, int decimals, double unit) {
   const auto figure = [&](std::optional<double> value) {
     return plain_figure(value ? std::optional(unit * *value) : value, decimals);
   };
-  if (!of.median) return kNoFigure;
-  return fmt::format("{} ({}, {})", figure(of.median), figure(of.lower), figure(of.upper));
+  if (!quartiles.median) return kNoFigure;
+  return fmt::format("{} ({}, {})", figure(quartiles.median), figure(quartiles.lower),
+                     figure(quartiles.upper));
 }
 
 std::string share_figure(std::optional<double> share) {

@@ -19,24 +19,25 @@ class ConsolePanel {
 
   /// \param size  size of the window, which the panel fills, in window units
   /// \param density  as ScreenScale::density
-  /// \param may_write  false while the keyboard is the participant's
-  void draw(Vec2 size, float density, bool may_write);
+  /// \param has_keyboard  false while it belongs to the participant
+  void draw(Vec2 size, float density, bool has_keyboard);
   /// Whether a field has the keyboard.
-  [[nodiscard]] bool is_writing() const noexcept { return is_writing_; }
-  /// Whether a new field is about to get the keyboard. Until then letters must wait.
-  [[nodiscard]] bool is_settling() const noexcept { return wants_keyboard_; }
+  [[nodiscard]] bool is_typing() const noexcept { return is_typing_; }
+  /// Whether a new field is about to get the keyboard. Until then, letters must be held back.
+  [[nodiscard]] bool is_focus_pending() const noexcept { return is_focus_pending_; }
 
  private:
   void draw_actions(const ExperimenterView& view, float density);
-  void draw_question(const ExperimenterView& view, float density, bool may_write);
+  void draw_question(const ExperimenterView& view, float density, bool has_keyboard);
   void draw_choices(const ExperimenterQuestion& question);
   /// \return whether the line was ended by Enter
-  [[nodiscard]] bool draw_line(const ExperimenterQuestion& question, float density, bool may_write);
+  [[nodiscard]] bool draw_text_field(const ExperimenterQuestion& question, float density,
+                                     bool has_keyboard);
 
   ExperimenterDesk& desk_;
-  bool wants_keyboard_ = false;  ///< a new field, which ImGui has not made active yet
-  bool is_writing_ = false;
-  std::size_t questions_ = 0;  ///< as of the view, when text_ was begun
+  bool is_focus_pending_ = false;  ///< ImGui has not yet activated a new field
+  bool is_typing_ = false;
+  std::size_t question_number_ = 0;  ///< the view's question when text_ was started
   std::array<char, 501> text_{};
 };
 

@@ -27,7 +27,7 @@ constexpr const char* kTitle = "Touchtrial console";
 constexpr int kWindowWidth = 920;
 constexpr int kWindowHeight = 640;
 /// After this number of frames, ImGui's layout is stable.
-constexpr int kSettling = 3;
+constexpr int kSettlingFrames = 3;
 
 /// The editing keys of a line of text in GLFW and in ImGui.
 constexpr std::array<std::pair<int, int>, 11> kTextKeys = {{
@@ -47,7 +47,7 @@ constexpr std::array<std::pair<int, int>, 11> kTextKeys = {{
 struct Event {
   enum class Kind { moved, button, key, letter };
   Kind kind{};
-  ImVec2 at{};
+  ImVec2 position{};
   int key = 0;  ///< ImGui's
   bool is_down = false;
   bool with_control = false;
@@ -55,10 +55,10 @@ struct Event {
 };
 
 #if IMGUI_VERSION_NUM >= 18700
-void notify(ImGuiIO& io, const Event& event) {
+void add_event(ImGuiIO& io, const Event& event) {
   switch (event.kind) {
     case Event::Kind::moved:
-      return io.AddMousePosEvent(event.at.x, event.at.y);
+      return io.AddMousePosEvent(event.position.x, event.position.y);
     case Event::Kind::button:
       return io.AddMouseButtonEvent(0, event.is_down);
     case Event::Kind::key:
@@ -68,12 +68,12 @@ void notify(ImGuiIO& io, const Event& event) {
       return io.AddInputCharacter(event.letter);
   }
 }
-void name_keys(ImGuiIO& /*io*/) {}
+void map_keys(ImGuiIO& /*io*/) {}
 #else
-void notify(ImGuiIO& io, const Event& event) {
+void add_event(ImGuiIO& io, const Event& event) {
   switch (event.kind) {
     case Event::Kind::moved:
-      io.MousePos = event.at;
+      io.MousePos = event.position;
       return;
     case Event::Kind::button:
       io.MouseDown[0] = event.is_down;
@@ -87,40 +87,40 @@ void notify(ImGuiIO& io, const Event& event) {
   }
 }
 /// Maps each of ImGui's keys to its own number.
-void name_keys(ImGuiIO& io) {
+void map_keys(ImGuiIO& io) {
   for (const auto& [glfw, key] : kTextKeys) io.KeyMap[key] = key;
 }
 #endif
 
-[[noreturn]] void refuse_monitor(int wanted, int count) {
-  throw DeviceError("experimenter's window: there is no monitor " + std::to_string(wanted) +
+[[noreturn]] void refuse_monitor(int number, int count) {
+  throw DeviceError("experimenter's window: there is no monitor " + std::to_string(number) +
                     "; this machine has " + std::to_string(count) +
-                    ": connect another, or choose one of these");
+                    ": connect another monitor, or choose one of these");
 }
 
 /// Limits the window's size.
-/// \return the size that it has then
-std::pair<int, int> shrink_to(GLFWwindow* window, int width, int height) {
-  int own_width = 0;
-  int own_height = 0;
-  glfwGetWindowSize(window, &own_width, &own_height);
-  const std::pair size{std::min(own_width, width), std::min(own_height, height)};
+/// \return the resulting size
+std::pair<int, int> limit_size(GLFWwindow* window, int width, int height) {
+  int old_width = 0;
+  int old_height = 0;
+  glfwGetWindowSize(window, &old_width, &old_height);
+  const std::pair size{std::min(old_width, width), std::min(old_height, height)};
   glfwSetWindowSize(window, size.first, size.second);
   return size;
 }
 
 /// Moves the window to the middle of the monitor, and limits its size.
-void place(GLFWwindow* window, int wanted) {
+void centre_on_monitor(GLFWwindow* window, int number) {
   int count = 0;
   GLFWmonitor** monitors = glfwGetMonitors(&count);
-  if (wanted < 1 || wanted > count) refuse_monitor(wanted, count);
+  if (number < 1 || number > count) refuse_monitor(number, count);
   int x = 0;
   int y = 0;
   int width = 0;
   int height = 0;
-  glfwGetMonitorWorkarea(monitors[wanted - 1], &x, &y, &width, &height);
-  const auto [own_width, own_height] = shrink_to(window, width, height);
-  glfwSetWindowPos(window, x + (width - own_width) / 2, y + (height - own_height) / 2);
+  glfwGetMonitorWorkarea(monitors[number - 1], &x, &y, &width, &height);
+  const auto [new_width, new_height] = limit_size(window, width, height);
+  glfwSetWindowPos(window, x + (width - new_width) / 2, y + (height - new_height) / 2);
 }
 
 GLFWwindow* make_window() {
@@ -161,17 +161,17 @@ float enlargement(const Surface& surface) {
 }  // namespace
 
 struct ConsoleWindow::State final : ExperimenterFace {
-  State(ExperimenterDesk& shared_desk, ConsoleWindowOptions wanted)
-      : desk(shared_desk), options(std::move(wanted)), panel(desk) {}
+  State(ExperimenterDesk& shared_desk, ConsoleWindowOptions window_options)
+      : desk(shared_desk), options(std::move(window_options)), panel(desk) {}
 
-  /// Every change requires a new frame.
+  /// Requests a new frame after every change.
   void show(const ExperimenterView& view) override {
-    const std::string words =
-        status_line(view.status) + view.need + view.question.text + std::to_string(view.questions);
-    if (std::exchange(shown, words) != words) redraw();
+    const std::string words = status_line(view.status) + view.need + view.question.text +
+                              std::to_string(view.question_number);
+    if (std::exchange(shown_text, words) != words) redraw();
   }
 
-  static State& of(GLFWwindow* window) {
+  static State& state_of(GLFWwindow* window) {
     return *static_cast<State*>(glfwGetWindowUserPointer(window));
   }
 
@@ -179,9 +179,9 @@ struct ConsoleWindow::State final : ExperimenterFace {
     window = make_window();
     try {
       if (options.monitor) {
-        place(window, *options.monitor);
+        centre_on_monitor(window, *options.monitor);
       } else if (const auto& area = options.area) {
-        shrink_to(window, area->width, area->height);
+        limit_size(window, area->width, area->height);
         glfwSetWindowPos(window, area->x, area->y);
       }
     } catch (...) {
@@ -189,47 +189,50 @@ struct ConsoleWindow::State final : ExperimenterFace {
       throw;
     }
     glfwSetWindowUserPointer(window, this);
-    take_callbacks();
+    set_callbacks();
     glfwShowWindow(window);
     notify_surface();
     desk.add_face(*this);
   }
 
-  void take_callbacks() {
+  void set_callbacks() {
     glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int modifiers) {
-      of(w).take_key(key, action, modifiers);
+      state_of(w).handle_key(key, action, modifiers);
     });
     glfwSetCharCallback(window, [](GLFWwindow* w, unsigned int letter) {
-      if (of(w).takes_text()) of(w).push({.kind = Event::Kind::letter, .letter = letter});
+      if (state_of(w).accepts_text())
+        state_of(w).push({.kind = Event::Kind::letter, .letter = letter});
     });
     glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
-      of(w).push(
-          {.kind = Event::Kind::moved, .at = {static_cast<float>(x), static_cast<float>(y)}});
+      state_of(w).push(
+          {.kind = Event::Kind::moved, .position = {static_cast<float>(x), static_cast<float>(y)}});
     });
     glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int) {
       if (button != GLFW_MOUSE_BUTTON_LEFT) return;
-      of(w).push({.kind = Event::Kind::button, .is_down = action == GLFW_PRESS});
+      state_of(w).push({.kind = Event::Kind::button, .is_down = action == GLFW_PRESS});
     });
     glfwSetWindowCloseCallback(window,
                                [](GLFWwindow* w) { glfwSetWindowShouldClose(w, GLFW_FALSE); });
-    glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { of(w).redraw(); });
-    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).notify_surface(); });
-    glfwSetWindowPosCallback(window, [](GLFWwindow* w, int, int) { of(w).notify_surface(); });
+    glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { state_of(w).redraw(); });
+    glfwSetFramebufferSizeCallback(window,
+                                   [](GLFWwindow* w, int, int) { state_of(w).notify_surface(); });
+    glfwSetWindowPosCallback(window, [](GLFWwindow* w, int, int) { state_of(w).notify_surface(); });
   }
 
-  [[nodiscard]] bool takes_text() const {
-    return is_writing && !options.keyboard_is_participants();
+  [[nodiscard]] bool accepts_text() const {
+    return is_typing && !options.keyboard_is_participants();
   }
 
-  void take_key(int key, int action, int modifiers) {
+  void handle_key(int key, int action, int modifiers) {
     const bool is_release = action == GLFW_RELEASE;
-    if (!takes_text() && !is_release) return options.key(key, action, modifiers);
-    for (const auto& [glfw, named] : kTextKeys) {
+    if (!accepts_text() && !is_release) return options.key(key, action, modifiers);
+    for (const auto& [glfw, imgui_key] : kTextKeys) {
       if (glfw != key) continue;
       // A repeated key is sent as release and press.
-      if (action == GLFW_REPEAT) push({.kind = Event::Kind::key, .key = named, .is_down = false});
+      if (action == GLFW_REPEAT)
+        push({.kind = Event::Kind::key, .key = imgui_key, .is_down = false});
       push({.kind = Event::Kind::key,
-            .key = named,
+            .key = imgui_key,
             .is_down = !is_release,
             .with_control = (modifiers & GLFW_MOD_CONTROL) != 0});
     }
@@ -239,7 +242,7 @@ struct ConsoleWindow::State final : ExperimenterFace {
     {
       const std::lock_guard lock(mutex);
       events.push_back(event);
-      frames_due = kSettling;
+      frames_due = kSettlingFrames;
     }
     options.wake();
   }
@@ -247,37 +250,38 @@ struct ConsoleWindow::State final : ExperimenterFace {
   void redraw() {
     {
       const std::lock_guard lock(mutex);
-      frames_due = kSettling;
+      frames_due = kSettlingFrames;
     }
     options.wake();
   }
 
   void notify_surface() {
-    Surface now;
-    glfwGetWindowSize(window, &now.width, &now.height);
-    glfwGetFramebufferSize(window, &now.width_px, &now.height_px);
+    Surface current;
+    glfwGetWindowSize(window, &current.width, &current.height);
+    glfwGetFramebufferSize(window, &current.width_px, &current.height_px);
     // Nothing is drawn while the window is iconified.
-    if (now.height_px <= 0) now.width_px = 0;
-    now.density = screen_scale(window).density;
-    now.density *= enlargement(now);
+    if (current.height_px <= 0) current.width_px = 0;
+    current.density = screen_scale(window).density;
+    current.density *= enlargement(current);
     {
       const std::lock_guard lock(mutex);
-      surface = now;
+      surface = current;
     }
     redraw();
   }
 
   /// Processes events up to one button or key, because each needs its own frame: ImGui would defer
   /// further ones to a later frame, when their field may no longer exist.
-  void take_events(ImGuiIO& io) {
+  void process_events(ImGuiIO& io) {
     const std::lock_guard lock(mutex);
     for (bool is_first = true; !events.empty(); is_first = false) {
       const Event event = events.front();
-      const bool is_alone = event.kind == Event::Kind::button || event.kind == Event::Kind::key;
-      if (is_alone && !is_first) return;
+      const bool needs_own_frame =
+          event.kind == Event::Kind::button || event.kind == Event::Kind::key;
+      if (needs_own_frame && !is_first) return;
       events.pop_front();
-      notify(io, event);
-      if (is_alone) return;
+      add_event(io, event);
+      if (needs_own_frame) return;
     }
   }
 
@@ -292,22 +296,22 @@ struct ConsoleWindow::State final : ExperimenterFace {
     fonts_density = density;
   }
 
-  void paint(const Surface& now) {
+  void paint(const Surface& current) {
     ImGui::SetCurrentContext(context);
-    fit_fonts(now.density);
+    fit_fonts(current.density);
     ImGuiIO& io = ImGui::GetIO();
-    if (!panel.is_settling()) take_events(io);
-    io.DisplaySize = {static_cast<float>(now.width), static_cast<float>(now.height)};
-    io.DisplayFramebufferScale = {static_cast<float>(now.width_px) / io.DisplaySize.x,
-                                  static_cast<float>(now.height_px) / io.DisplaySize.y};
+    if (!panel.is_focus_pending()) process_events(io);
+    io.DisplaySize = {static_cast<float>(current.width), static_cast<float>(current.height)};
+    io.DisplayFramebufferScale = {static_cast<float>(current.width_px) / io.DisplaySize.x,
+                                  static_cast<float>(current.height_px) / io.DisplaySize.y};
     io.DeltaTime = 1.0F / 60.0F;
     ImGui_ImplOpenGL3_NewFrame();
     ImGui::NewFrame();
-    panel.draw({io.DisplaySize.x, io.DisplaySize.y}, now.density,
+    panel.draw({io.DisplaySize.x, io.DisplaySize.y}, current.density,
                !options.keyboard_is_participants());
-    is_writing = panel.is_writing();
+    is_typing = panel.is_typing();
     ImGui::Render();
-    glViewport(0, 0, now.width_px, now.height_px);
+    glViewport(0, 0, current.width_px, current.height_px);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
   }
 
@@ -316,17 +320,17 @@ struct ConsoleWindow::State final : ExperimenterFace {
   GLFWwindow* window = nullptr;
 
   // Shared between threads.
-  std::atomic<bool> is_writing{false};
+  std::atomic<bool> is_typing{false};
   mutable std::mutex mutex;
-  std::condition_variable for_picture;
+  std::condition_variable picture_ready;
   std::deque<Event> events;
   Surface surface;
-  int frames_due = kSettling;
-  bool picture_wanted = false;
+  int frames_due = kSettlingFrames;
+  bool picture_requested = false;
   std::optional<engine::ColourImage> picture;
 
   // Session's thread.
-  std::string shown;
+  std::string shown_text;
 
   // Drawing thread.
   ImGuiContext* context = nullptr;
@@ -351,7 +355,7 @@ void ConsoleWindow::begin_drawing() {
   state_->context = ImGui::CreateContext();
   ImGui::SetCurrentContext(state_->context);
   ImGui::GetIO().IniFilename = nullptr;
-  name_keys(ImGui::GetIO());
+  map_keys(ImGui::GetIO());
   ImGui_ImplOpenGL3_Init("#version 150");
 }
 
@@ -363,29 +367,29 @@ void ConsoleWindow::end_drawing() {
   glfwMakeContextCurrent(nullptr);
 }
 
-bool ConsoleWindow::wants_picture() const {
+bool ConsoleWindow::needs_frame() const {
   const std::lock_guard lock(state_->mutex);
   if (state_->surface.width_px <= 0) return false;
-  return state_->frames_due > 0 || !state_->events.empty() || state_->picture_wanted ||
-         state_->panel.is_settling();
+  return state_->frames_due > 0 || !state_->events.empty() || state_->picture_requested ||
+         state_->panel.is_focus_pending();
 }
 
 void ConsoleWindow::draw() {
   State& s = *state_;
-  Surface now;
+  Surface current;
   {
     const std::lock_guard lock(s.mutex);
-    now = s.surface;
-    s.frames_due = s.events.empty() ? std::max(0, s.frames_due - 1) : kSettling;
+    current = s.surface;
+    s.frames_due = s.events.empty() ? std::max(0, s.frames_due - 1) : kSettlingFrames;
   }
   glfwMakeContextCurrent(s.window);
-  s.paint(now);
+  s.paint(current);
   {
     const std::lock_guard lock(s.mutex);
-    if (s.picture_wanted && s.frames_due == 0) {
-      s.picture = drawn_picture(now.width_px, now.height_px);
-      s.picture_wanted = false;
-      s.for_picture.notify_all();
+    if (s.picture_requested && s.frames_due == 0) {
+      s.picture = capture_frame(current.width_px, current.height_px);
+      s.picture_requested = false;
+      s.picture_ready.notify_all();
     }
   }
   glfwSwapBuffers(s.window);
@@ -400,11 +404,11 @@ std::optional<engine::ColourImage> ConsoleWindow::picture(std::chrono::milliseco
   {
     const std::lock_guard lock(s.mutex);
     s.picture.reset();
-    s.picture_wanted = true;
+    s.picture_requested = true;
   }
   s.redraw();
   std::unique_lock lock(s.mutex);
-  s.for_picture.wait_for(lock, timeout, [&s] { return s.picture.has_value(); });
+  s.picture_ready.wait_for(lock, timeout, [&s] { return s.picture.has_value(); });
   return std::exchange(s.picture, std::nullopt);
 }
 

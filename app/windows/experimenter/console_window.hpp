@@ -20,12 +20,13 @@ struct ScreenArea {
 };
 
 struct ConsoleWindowOptions {
-  /// From 1, as the system counts monitors; nothing: `area`.
+  /// Number of the monitor, from 1 as the system counts; if not set, `area` applies.
   std::optional<int> monitor;
-  /// The window is placed in its corner and limited to its size; nothing: the system chooses the
-  /// position.
+  /// The window is placed in its corner and limited to its size; if not set, the system chooses
+  /// the position.
   std::optional<ScreenArea> area;
-  /// Whether a plane is on; all keys then go to the participant's window. Called on both threads.
+  /// Whether a plane is on, so that all keys go to the participant's window. Called on both
+  /// threads.
   std::function<bool()> keyboard_is_participants;
   /// Receives the arguments of GLFW's key callback for every key that is not text of this window.
   /// Called on the main thread.
@@ -40,7 +41,7 @@ class ConsoleWindow {
  public:
   /// Call it on the main thread while GLFW is running.
   /// \param desk  must outlive this
-  /// \throws DeviceError with the remedy if there is no such monitor, or no OpenGL 3.2
+  /// \throws DeviceError with the remedy if the monitor or OpenGL 3.2 is missing
   ConsoleWindow(ExperimenterDesk& desk, const ConsoleWindowOptions& options);
   /// Runs on the main thread, after drawing has ended.
   ~ConsoleWindow();
@@ -53,13 +54,13 @@ class ConsoleWindow {
   /// \name Drawing thread. These functions change the current OpenGL context.
   ///@{
   void begin_drawing();
-  [[nodiscard]] bool wants_picture() const;
+  [[nodiscard]] bool needs_frame() const;
   void draw();
   void end_drawing();
   ///@}
 
   /// Waits for the next picture. May be called from any thread except the drawing thread.
-  /// \return nothing if there is no picture in time
+  /// \return nothing after the timeout
   [[nodiscard]] std::optional<engine::ColourImage> picture(std::chrono::milliseconds timeout);
 
  private:

@@ -16,7 +16,7 @@ namespace {
 using RequestKind = session::ExperimenterRequest::Kind;
 using Question = ExperimenterQuestion;
 
-constexpr std::size_t kAskedShown = 6;
+constexpr std::size_t kMaxShownRequests = 6;
 constexpr const char* kPaused = "paused";
 constexpr const char* kDone = "done";
 constexpr const char* kSkip = "skip";
@@ -45,10 +45,11 @@ std::string words_of(const session::ExperimenterRequest& request) {
   return "";
 }
 
-bool is_half_typed(const std::string& code) {
+bool is_code_prefix(const std::string& code) {
   return !study::is_deviation_code(code) &&
-         std::ranges::any_of(study::kDeviationCodes,
-                             [&](std::string_view one) { return one.starts_with(code); });
+         std::ranges::any_of(study::kDeviationCodes, [&](std::string_view full_code) {
+           return full_code.starts_with(code);
+         });
 }
 
 }  // namespace
@@ -63,88 +64,89 @@ void ExperimenterDesk::remove_face(ExperimenterFace& face) {
   std::erase(faces_, &face);
 }
 
-void ExperimenterDesk::each_face(const std::function<void(ExperimenterFace&)>& work) {
+void ExperimenterDesk::for_each_face(const std::function<void(ExperimenterFace&)>& work) {
   const std::lock_guard lock(faces_mutex_);
   for (ExperimenterFace* const face : faces_) work(*face);
 }
 
-void ExperimenterDesk::show_faces() {
-  each_face([now = view()](ExperimenterFace& face) { face.show(now); });
+void ExperimenterDesk::update_faces() {
+  for_each_face([current = view()](ExperimenterFace& face) { face.show(current); });
 }
 
 ExperimenterView ExperimenterDesk::view() const {
   const std::lock_guard lock(mutex_);
-  ExperimenterView now{status_, question(), questions_, "", asked_, {}};
-  if (waits_) {
-    now.need = need_.empty() ? "ready: switch the force on (g) once the hand is at the pen"
-                             : "the device waits: " + need_;
+  ExperimenterView current{status_, question(), question_number_, "", shown_requests_, {}};
+  if (is_device_waiting_) {
+    current.need = need_.empty() ? "ready: switch the force on (g) once the hand is at the pen"
+                                 : "the device waits: " + need_;
   }
   for (const ExperimenterAction& action : kExperimenterActions) {
-    now.may[static_cast<std::size_t>(action.what)] = may(action.what);
+    current.allowed[static_cast<std::size_t>(action.kind)] = is_allowed(action.kind);
   }
-  return now;
+  return current;
 }
 
-bool ExperimenterDesk::may(What what) const {
-  const bool is_paused = is_pause_asked_ || status_.stage == kPaused;
-  switch (what) {
-    case What::pause:
+bool ExperimenterDesk::is_allowed(Action action) const {
+  const bool is_paused = is_pause_requested_ || status_.stage == kPaused;
+  switch (action) {
+    case Action::pause:
       return !is_paused;
-    case What::resume:
+    case Action::resume:
       return is_paused;
-    case What::arm:
+    case Action::arm:
       return is_ready_shown_;
-    case What::at_reset:
-      return waits_ && !need_.empty();
+    case Action::at_reset:
+      return is_device_waiting_ && !need_.empty();
     default:
       return true;
   }
 }
 
-void ExperimenterDesk::act(What what) {
+void ExperimenterDesk::act(Action action) {
   const std::lock_guard lock(mutex_);
-  if (!may(what)) return;
-  switch (what) {
-    case What::pause:
-      is_pause_asked_ = true;
-      ask(RequestKind::pause);
-      return begin(Own::pause_reason);
-    case What::resume:
-      is_pause_asked_ = false;
-      return ask(RequestKind::resume);
-    case What::comfort_stop:
-      ask(RequestKind::comfort_stop);
-      return begin(Own::stop_reason);
-    case What::note:
-      return begin(Own::note);
-    case What::deviation:
+  if (!is_allowed(action)) return;
+  switch (action) {
+    case Action::pause:
+      is_pause_requested_ = true;
+      add_request(RequestKind::pause);
+      return open(ActionQuestion::pause_reason);
+    case Action::resume:
+      is_pause_requested_ = false;
+      return add_request(RequestKind::resume);
+    case Action::comfort_stop:
+      add_request(RequestKind::comfort_stop);
+      return open(ActionQuestion::stop_reason);
+    case Action::note:
+      return open(ActionQuestion::note);
+    case Action::deviation:
       code_.clear();
-      return begin(Own::code);
-    case What::abort:
-      return begin(Own::sure);
-    case What::arm:
+      return open(ActionQuestion::code);
+    case Action::abort:
+      return open(ActionQuestion::confirm);
+    case Action::arm:
       is_armed_ = true;
       return;
-    case What::at_reset:
+    case Action::at_reset:
       is_at_reset_ = true;
       return;
   }
 }
 
-void ExperimenterDesk::begin(Own own) {
-  own_ = own;
-  ++questions_;
+void ExperimenterDesk::open(ActionQuestion question) {
+  action_question_ = question;
+  ++question_number_;
 }
 
 void ExperimenterDesk::discard() {
   const std::lock_guard lock(mutex_);
-  begin(Own::none);
+  open(ActionQuestion::none);
 }
 
-void ExperimenterDesk::ask(Request::Kind kind, const std::string& text, const std::string& code) {
+void ExperimenterDesk::add_request(Request::Kind kind, const std::string& text,
+                                   const std::string& code) {
   requests_.push_back({kind, text, code});
-  asked_.push_front(words_of(requests_.back()));
-  if (asked_.size() > kAskedShown) asked_.pop_back();
+  shown_requests_.push_front(words_of(requests_.back()));
+  if (shown_requests_.size() > kMaxShownRequests) shown_requests_.pop_back();
 }
 
 void ExperimenterDesk::add(const session::ExperimenterRequest& request) {
@@ -152,39 +154,39 @@ void ExperimenterDesk::add(const session::ExperimenterRequest& request) {
   requests_.push_back(request);
 }
 
-ExperimenterQuestion ExperimenterDesk::own_question() const {
-  switch (own_) {
-    case Own::pause_reason:
+ExperimenterQuestion ExperimenterDesk::action_question() const {
+  switch (action_question_) {
+    case ActionQuestion::pause_reason:
       return {Question::Kind::text, "Paused. The reason, if it should be recorded"};
-    case Own::stop_reason:
+    case ActionQuestion::stop_reason:
       return {Question::Kind::text, "Stopped. The reason, without mentioning the texture"};
-    case Own::note:
+    case ActionQuestion::note:
       return {Question::Kind::text, "Note"};
-    case Own::code: {
+    case ActionQuestion::code: {
       Question code{Question::Kind::text,
                     code_.empty() ? "Code of the deviation"
                                   : fmt::format("'{}' is only the beginning of a code", code_)};
-      for (const std::string_view one : study::kDeviationCodes) {
-        code.choices.push_back({std::string(one)});
+      for (const std::string_view full_code : study::kDeviationCodes) {
+        code.choices.push_back({std::string(full_code)});
       }
       return code;
     }
-    case Own::remark:
+    case ActionQuestion::remark:
       return {Question::Kind::text, "Deviation " + code_ + ", in words"};
-    case Own::sure:
-      return {Question::Kind::sure,
-              "Abort ends this session for good; it cannot be resumed",
+    case ActionQuestion::confirm:
+      return {Question::Kind::confirm,
+              "Abort ends this session permanently; it cannot be resumed",
               {{kYes, "End the session"}}};
-    case Own::abort_reason:
+    case ActionQuestion::abort_reason:
       return {Question::Kind::text, "The session ends. The reason"};
-    case Own::none:
+    case ActionQuestion::none:
       break;
   }
   return {};
 }
 
 ExperimenterQuestion ExperimenterDesk::question() const {
-  if (own_ != Own::none) return own_question();
+  if (action_question_ != ActionQuestion::none) return action_question();
   if (spoken_ && spoken_->is_confirmed) {
     Question confidence{Question::Kind::number,
                         fmt::format("trial {}: confidence", spoken_->step.trial)};
@@ -213,9 +215,9 @@ ExperimenterQuestion ExperimenterDesk::question() const {
 
 void ExperimenterDesk::answer(const std::string& text) {
   const std::lock_guard lock(mutex_);
-  ++questions_;
-  if (own_ != Own::none) {
-    answer_own(text);
+  ++question_number_;
+  if (action_question_ != ActionQuestion::none) {
+    answer_action_question(text);
   } else if (spoken_) {
     answer_spoken(text);
   } else if (sheet_) {
@@ -223,31 +225,31 @@ void ExperimenterDesk::answer(const std::string& text) {
   }
 }
 
-void ExperimenterDesk::answer_own(const std::string& text) {
-  switch (std::exchange(own_, Own::none)) {
-    case Own::pause_reason:
-      if (!text.empty()) ask(RequestKind::note, "pause: " + text);
+void ExperimenterDesk::answer_action_question(const std::string& text) {
+  switch (std::exchange(action_question_, ActionQuestion::none)) {
+    case ActionQuestion::pause_reason:
+      if (!text.empty()) add_request(RequestKind::note, "pause: " + text);
       break;
-    case Own::stop_reason:
-      if (!text.empty()) ask(RequestKind::deviation, text, session::kComfortStopCode);
+    case ActionQuestion::stop_reason:
+      if (!text.empty()) add_request(RequestKind::deviation, text, session::kComfortStopCode);
       break;
-    case Own::note:
-      if (!text.empty()) ask(RequestKind::note, text);
+    case ActionQuestion::note:
+      if (!text.empty()) add_request(RequestKind::note, text);
       break;
-    case Own::code:
+    case ActionQuestion::code:
       code_ = text;
-      if (!text.empty()) begin(is_half_typed(text) ? Own::code : Own::remark);
+      if (!text.empty()) open(is_code_prefix(text) ? ActionQuestion::code : ActionQuestion::remark);
       break;
-    case Own::remark:
-      ask(RequestKind::deviation, text, code_);
+    case ActionQuestion::remark:
+      add_request(RequestKind::deviation, text, code_);
       break;
-    case Own::sure:
-      if (text == kYes) begin(Own::abort_reason);
+    case ActionQuestion::confirm:
+      if (text == kYes) open(ActionQuestion::abort_reason);
       break;
-    case Own::abort_reason:
-      ask(RequestKind::abort, text);
+    case ActionQuestion::abort_reason:
+      add_request(RequestKind::abort, text);
       break;
-    case Own::none:
+    case ActionQuestion::none:
       break;
   }
 }
@@ -278,21 +280,21 @@ void ExperimenterDesk::answer_spoken(const std::string& text) {
 void ExperimenterDesk::show(const session::SessionStatus& status) {
   {
     const std::lock_guard lock(mutex_);
-    if (status_.stage == kPaused && status.stage != kPaused) is_pause_asked_ = false;
+    if (status_.stage == kPaused && status.stage != kPaused) is_pause_requested_ = false;
     status_ = status;
   }
-  show_faces();
+  update_faces();
 }
 
 void ExperimenterDesk::acknowledged(int /*trial*/) {
-  each_face([](ExperimenterFace& face) { face.make_room(); });
+  for_each_face([](ExperimenterFace& face) { face.clear_line(); });
 }
 
 std::optional<session::ExperimenterRequest> ExperimenterDesk::request() {
-  each_face([](ExperimenterFace& face) { face.take_input(); });
+  for_each_face([](ExperimenterFace& face) { face.read_input(); });
   const std::lock_guard lock(mutex_);
   if (requests_.empty()) return std::nullopt;
-  // Force requires that `ready` is shown again first.
+  // The experimenter must see "ready" again before switching on the force.
   is_ready_shown_ = false;
   is_armed_ = false;
   Request first = std::move(requests_.front());
@@ -307,39 +309,39 @@ std::optional<std::vector<session::Tick>> ExperimenterDesk::day_sheet(
     const std::lock_guard lock(mutex_);
     if (!sheet_) sheet_.emplace(Sheet{items, {}});
   }
-  each_face([](ExperimenterFace& face) { face.take_input(); });
+  for_each_face([](ExperimenterFace& face) { face.read_input(); });
   {
     const std::lock_guard lock(mutex_);
     if (sheet_->ticks.size() == items.size()) {
       return std::exchange(sheet_, std::nullopt)->ticks;
     }
   }
-  show_faces();
-  each_face([](ExperimenterFace& face) { face.rest(); });
+  update_faces();
+  for_each_face([](ExperimenterFace& face) { face.sleep_briefly(); });
   return std::nullopt;
 }
 
-session::Attendant::Reply ExperimenterDesk::attend(const std::string& need) {
-  forget_spoken_answer();  // the question of an interrupted trial would hide the request
-  each_face([](ExperimenterFace& face) { face.take_input(); });
-  Reply says{};
+session::Attendant::Reply ExperimenterDesk::poll(const std::string& need) {
+  forget_spoken_answer();  // because an interrupted trial's question would hide the request
+  for_each_face([](ExperimenterFace& face) { face.read_input(); });
+  Reply reply{};
   {
     const std::lock_guard lock(mutex_);
-    says = said(need.empty());
-    waits_ = says == Reply::wait;
+    reply = current_reply(need.empty());
+    is_device_waiting_ = reply == Reply::wait;
     need_ = need;
-    is_ready_shown_ = waits_ && need.empty();
+    is_ready_shown_ = is_device_waiting_ && need.empty();
     is_armed_ = false;
     is_at_reset_ = false;
   }
-  if (says != Reply::wait) return says;
-  show_faces();
-  each_face([](ExperimenterFace& face) { face.rest(); });
-  return says;
+  if (reply != Reply::wait) return reply;
+  update_faces();
+  for_each_face([](ExperimenterFace& face) { face.sleep_briefly(); });
+  return reply;
 }
 
-/// When polled, the session records an abort, its reason and all other entries.
-session::Attendant::Reply ExperimenterDesk::said(bool is_ready) const {
+/// An abort stays queued, so that the session records it and its reason when it polls.
+session::Attendant::Reply ExperimenterDesk::current_reply(bool is_ready) const {
   if (std::ranges::find(requests_, RequestKind::abort, &Request::kind) != requests_.end()) {
     return Reply::stop;
   }
@@ -358,18 +360,18 @@ std::optional<SpokenAnswer> ExperimenterDesk::spoken_answer(
     const std::lock_guard lock(mutex_);
     if (!spoken_) spoken_ = Spoken{.step = step, .labels = labels};
   }
-  each_face([](ExperimenterFace& face) { face.take_input(); });
+  for_each_face([](ExperimenterFace& face) { face.read_input(); });
   {
     const std::lock_guard lock(mutex_);
-    const bool is_whole =
+    const bool is_complete =
         spoken_->is_confirmed && (spoken_->confidence || step.confidence_levels == 0);
-    if (is_whole) {
+    if (is_complete) {
       const SpokenAnswer answer{*spoken_->label, spoken_->first, spoken_->confidence};
       spoken_.reset();
       return answer;
     }
   }
-  show_faces();
+  update_faces();
   return std::nullopt;
 }
 
@@ -378,22 +380,22 @@ void SpokenAnswers::see_pictures(const std::vector<std::string>& labels) {
   positions_.resize(labels.size());
   std::iota(positions_.begin(), positions_.end(), 0);
   std::ranges::sort(positions_, {}, [&](int i) { return labels[static_cast<std::size_t>(i)]; });
-  sorted_.clear();
-  for (const int i : positions_) sorted_.push_back(labels[static_cast<std::size_t>(i)]);
+  sorted_labels_.clear();
+  for (const int i : positions_) sorted_labels_.push_back(labels[static_cast<std::size_t>(i)]);
 }
 
-std::optional<session::StepReply> SpokenAnswers::attend(const session::Step& step) {
-  const auto shown = participant_.attend(step);
-  const auto* asked = std::get_if<session::AnswerStep>(&step);
-  if (asked == nullptr || asked->sight != study::Sight::blindfold) return shown;
-  if (shown && shown->explore_again) return shown;
-  const auto spoken = desk_.spoken_answer(*asked, sorted_);
+std::optional<session::StepReply> SpokenAnswers::show_step(const session::Step& step) {
+  const auto window_reply = participant_.show_step(step);
+  const auto* answer = std::get_if<session::AnswerStep>(&step);
+  if (answer == nullptr || answer->sight != study::Sight::blindfold) return window_reply;
+  if (window_reply && window_reply->explore_again) return window_reply;
+  const auto spoken = desk_.spoken_answer(*answer, sorted_labels_);
   if (!spoken) return std::nullopt;
   session::StepReply reply;
   reply.at = std::chrono::steady_clock::now();
-  Chosen chosen{positions_.at(spoken->label)};
-  if (spoken->first) chosen.first_position = positions_.at(*spoken->first);
-  reply.answer = chosen;
+  ChoiceAnswer choice{positions_.at(spoken->label)};
+  if (spoken->first) choice.first_position = positions_.at(*spoken->first);
+  reply.answer = choice;
   reply.confidence = spoken->confidence;
   return reply;
 }

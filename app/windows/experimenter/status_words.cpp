@@ -25,7 +25,7 @@ const char* level_word(session::HandLevel level) noexcept {
 
 std::string stop_advice(const session::SessionStatus& status) {
   if (!status.participant_stopped) return "";
-  return std::string("Ask how they are, and type a reason as a deviation (code ") +
+  return std::string("Ask how they are, and enter the reason as a deviation (code ") +
          session::kComfortStopCode + "). " +
          (status.needs_consent
               ? "The force stays off until you switch it on again (g); abort ends the session."
@@ -37,7 +37,7 @@ std::string progress_words(const session::SessionStatus& status) {
   words += status.participant + "  " + status.stage;
   if (status.practice && status.stage != "practice") words += " (practice)";
   if (status.participant_stopped) words += " by the participant";
-  if (status.trial > 0) words += fmt::format("  trial {} of {}", status.trial, status.of);
+  if (status.trial > 0) words += fmt::format("  trial {} of {}", status.trial, status.total);
   if (status.interruptions > 0) words += fmt::format("  interruptions {}", status.interruptions);
   return words;
 }
@@ -57,7 +57,7 @@ std::string status_line(const session::SessionStatus& status) {
   return line;
 }
 
-std::string first_of(const std::string& text, int columns) {
+std::string first_characters(const std::string& text, int columns) {
   std::size_t end = 0;
   for (int column = 0; end < text.size(); ++end) {
     if (begins_character(text[end]) && ++column > columns) break;
@@ -65,7 +65,7 @@ std::string first_of(const std::string& text, int columns) {
   return text.substr(0, end);
 }
 
-std::string last_of(const std::string& text, int columns) {
+std::string last_characters(const std::string& text, int columns) {
   std::size_t begin = text.size();
   for (int column = 0; begin > 0 && column < columns; --begin) {
     if (begins_character(text[begin - 1])) ++column;

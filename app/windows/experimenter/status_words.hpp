@@ -7,8 +7,8 @@
 
 namespace touchtrial::app {
 
-/// Participant, stage, trial, time, device, and pressure and speed of the hand, or else the servo's
-/// timing, as far as known. Nothing in it depends on a stimulus or an outcome.
+/// Participant, stage, trial, time, device, and pressure and speed of the hand, or otherwise the
+/// servo's timing, as far as known. Nothing in it depends on a stimulus or an outcome.
 [[nodiscard]] std::string status_line(const session::SessionStatus& status);
 
 /// "low", "right" or "high".
@@ -22,8 +22,8 @@ namespace touchtrial::app {
 
 /// \name The first or last characters of a UTF-8 text, at most `columns`
 ///@{
-[[nodiscard]] std::string first_of(const std::string& text, int columns);
-[[nodiscard]] std::string last_of(const std::string& text, int columns);
+[[nodiscard]] std::string first_characters(const std::string& text, int columns);
+[[nodiscard]] std::string last_characters(const std::string& text, int columns);
 ///@}
 
 }  // namespace touchtrial::app

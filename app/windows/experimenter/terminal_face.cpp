@@ -35,7 +35,7 @@ bool ends_line(char key) {
   return key == '\n' || key == '\r';
 }
 
-bool deletes(char key) {
+bool is_delete_key(char key) {
   return key == '\x7f' || key == '\b';
 }
 
@@ -68,21 +68,21 @@ ExperimenterTerminal standard_terminal() {
     std::fputs(text.c_str(), stderr);
     std::fflush(stderr);
   };
-  terminal.rewrites = ::isatty(STDERR_FILENO) != 0;
+  terminal.can_rewrite = ::isatty(STDERR_FILENO) != 0;
   terminal.columns = columns_of_terminal();
   terminal.pause = [] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); };
   return terminal;
 }
 
-bool TypedLine::take(char key) {
+bool TypedLine::add_key(char key) {
   if (ends_line(key)) return true;
-  if (deletes(key)) {
+  if (is_delete_key(key)) {
     while (!text_.empty() && continues_character(text_.back())) text_.pop_back();
     if (!text_.empty()) text_.pop_back();
     return false;
   }
   const bool is_control = static_cast<unsigned char>(key) < 0x20U;
-  // The length limit refuses only first bytes, so that no character is cut in two.
+  // The length limit refuses only a character's first byte, so that no character is cut in two.
   if (is_control || (text_.size() >= kMaxLineBytes && !continues_character(key))) return false;
   text_ += key;
   return false;
@@ -100,33 +100,33 @@ TerminalFace::~TerminalFace() {
 }
 
 void TerminalFace::end_line() {
-  if (terminal_.rewrites && !shown_.empty()) terminal_.write("\n");
-  shown_.clear();
+  if (terminal_.can_rewrite && !shown_line_.empty()) terminal_.write("\n");
+  shown_line_.clear();
 }
 
-void TerminalFace::make_room() {
-  if (terminal_.rewrites && !shown_.empty()) terminal_.write(kClearLine);
-  shown_.clear();
+void TerminalFace::clear_line() {
+  if (terminal_.can_rewrite && !shown_line_.empty()) terminal_.write(kClearLine);
+  shown_line_.clear();
 }
 
-void TerminalFace::rest() {
+void TerminalFace::sleep_briefly() {
   if (terminal_.pause) terminal_.pause();
 }
 
-void TerminalFace::take_input() {
+void TerminalFace::read_input() {
   if (!terminal_.key) return;
-  while (const auto key = terminal_.key()) take(*key);
+  while (const auto key = terminal_.key()) handle_key(*key);
 }
 
-void TerminalFace::take(char key) {
+void TerminalFace::handle_key(char key) {
   const ExperimenterView view = desk_.view();
-  if (std::exchange(questions_, view.questions) != view.questions) line_.set("");
-  if (take_for(view.question, key)) return;
+  if (std::exchange(question_number_, view.question_number) != view.question_number) line_.set("");
+  if (answer_with(view.question, key)) return;
   const auto action = std::ranges::find(kExperimenterActions, key, &ExperimenterAction::key);
-  if (action != kExperimenterActions.end()) desk_.act(action->what);
+  if (action != kExperimenterActions.end()) desk_.act(action->kind);
 }
 
-bool TerminalFace::take_for(const ExperimenterQuestion& question, char key) {
+bool TerminalFace::answer_with(const ExperimenterQuestion& question, char key) {
   switch (question.kind) {
     case Question::Kind::none:
       return false;
@@ -138,85 +138,89 @@ bool TerminalFace::take_for(const ExperimenterQuestion& question, char key) {
       return true;
     }
     case Question::Kind::number:
-      if (!ends_line(key) && !deletes(key) && (key < '0' || key > '9')) return false;
+      if (!ends_line(key) && !is_delete_key(key) && (key < '0' || key > '9')) return false;
       break;
     case Question::Kind::text:
-    case Question::Kind::sure:
+    case Question::Kind::confirm:
       if (key == kEscape) line_.set("");
       if (key == kEscape) desk_.discard();
       if (key == kTab) complete(question);
       if (key == kEscape || key == kTab) return true;
       break;
   }
-  if (!line_.take(key)) return true;
+  if (!line_.add_key(key)) return true;
   const std::string text = line_.text();
   line_.set("");
   desk_.answer(text);
   return true;
 }
 
-/// The next choice with the typed prefix, cyclically.
+/// Completes to the next choice with the typed prefix, cyclically.
 void TerminalFace::complete(const ExperimenterQuestion& question) {
   const auto& choices = question.choices;
-  const auto now = std::ranges::find(choices, line_.text(), &Question::Choice::answer);
-  if (now == choices.end() || !now->answer.starts_with(completed_)) completed_ = line_.text();
-  const std::size_t from =
-      now == choices.end() ? 0 : 1 + static_cast<std::size_t>(now - choices.begin());
+  const auto current_choice = std::ranges::find(choices, line_.text(), &Question::Choice::answer);
+  if (current_choice == choices.end() || !current_choice->answer.starts_with(prefix_))
+    prefix_ = line_.text();
+  const std::size_t first_index =
+      current_choice == choices.end()
+          ? 0
+          : 1 + static_cast<std::size_t>(current_choice - choices.begin());
   for (std::size_t i = 0; i < choices.size(); ++i) {
-    const std::string& answer = choices[(from + i) % choices.size()].answer;
-    if (answer.starts_with(completed_)) return line_.set(answer);
+    const std::string& answer = choices[(first_index + i) % choices.size()].answer;
+    if (answer.starts_with(prefix_)) return line_.set(answer);
   }
 }
 
 std::string TerminalFace::prompt(const ExperimenterQuestion& question) const {
   switch (question.kind) {
-    case Question::Kind::sure:
+    case Question::Kind::confirm:
       return question.text + "; type " + question.choices.front().answer + ": " + line_.text();
     case Question::Kind::text:
-      return question.text + (question.choices.empty() ? "" : " (Tab: the next of the program's)") +
-             ": " + line_.text();
+      return question.text + (question.choices.empty() ? "" : " (Tab: next suggestion)") + ": " +
+             line_.text();
     case Question::Kind::number:
     case Question::Kind::keys:
       break;
     case Question::Kind::none:
       return "";
   }
-  const bool by_keys = question.kind == Question::Kind::keys;
-  return (by_keys ? "" : question.text + " ") +
+  const bool is_by_keys = question.kind == Question::Kind::keys;
+  return (is_by_keys ? "" : question.text + " ") +
          listed(question.choices, ", ",
-                [&](const Question::Choice& one) { return words_of(one, question.kind); }) +
+                [&](const Question::Choice& choice) { return words_of(choice, question.kind); }) +
          ": " + line_.text();
 }
 
 void TerminalFace::write_above(const std::string& line) {
-  make_room();
+  clear_line();
   terminal_.write(line + "\n");
 }
 
 void TerminalFace::rewrite(const std::string& line) {
   // A wrapped line cannot be overwritten, so the start of a long typed line is cut off.
-  const std::string cut = last_of(line, terminal_.columns - 1);
-  if (cut == shown_) return;
-  shown_ = cut;
-  terminal_.write(terminal_.rewrites ? "\r" + cut + "\x1b[K" : line + "\n");
+  const std::string visible_line = last_characters(line, terminal_.columns - 1);
+  if (visible_line == shown_line_) return;
+  shown_line_ = visible_line;
+  terminal_.write(terminal_.can_rewrite ? "\r" + visible_line + "\x1b[K" : line + "\n");
 }
 
 void TerminalFace::show(const ExperimenterView& view) {
   const session::SessionStatus& status = view.status;
-  if (status.participant_stopped && !is_stop_told_) {
-    if (terminal_.rewrites) terminal_.write("\a");
+  if (status.participant_stopped && !is_stop_announced_) {
+    if (terminal_.can_rewrite) terminal_.write("\a");
     write_above("The participant has stopped the force. " + stop_advice(status));
   }
-  is_stop_told_ = status.participant_stopped;
+  is_stop_announced_ = status.participant_stopped;
   const bool is_item = view.question.kind == Question::Kind::keys;
-  if (is_item && view.question.text != item_) write_above(view.question.text);
-  item_ = is_item ? view.question.text : "";
-  if (std::exchange(questions_, view.questions) != view.questions) line_.set("");
+  if (is_item && view.question.text != shown_item_) write_above(view.question.text);
+  shown_item_ = is_item ? view.question.text : "";
+  if (std::exchange(question_number_, view.question_number) != view.question_number) line_.set("");
   if (view.question.kind != Question::Kind::none) return rewrite(prompt(view.question));
   if (!view.need.empty()) return rewrite(view.need);
-  if (terminal_.rewrites) return rewrite(first_of(status_line(status), terminal_.columns - 1));
+  if (terminal_.can_rewrite)
+    return rewrite(first_characters(status_line(status), terminal_.columns - 1));
   const std::string progress = progress_words(status);
-  if (std::exchange(progress_, progress) != progress) write_above(status_line(status));
+  if (std::exchange(shown_progress_, progress) != progress) write_above(status_line(status));
 }
 
 }  // namespace touchtrial::app

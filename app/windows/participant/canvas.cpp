@@ -17,20 +17,20 @@ constexpr double kSmall = 19.0;
 constexpr double kBody = 24.0;
 constexpr double kTitleSize = 38.0;
 /// Letters shrink by this factor until they fit, down to the smallest size.
-constexpr double kSmallerBy = 0.94;
-constexpr double kSmallest = 0.4;
+constexpr double kShrinkFactor = 0.94;
+constexpr double kMinShrink = 0.4;
 
 ImVec2 to_imgui(double x, double y) {
   return {static_cast<float>(x), static_cast<float>(y)};
 }
 
 /// The design's colours with high contrast: black, white, and dark shades of the others.
-struct Contrasting {
+struct ContrastPair {
   std::uint32_t usual;
   std::uint32_t high;
 };
 constexpr std::uint32_t kInk = 0xFF000000;
-constexpr Contrasting kContrasting[] = {
+constexpr ContrastPair kContrastPairs[] = {
     {tone::kGround, tone::kWhite}, {tone::kEdge, kInk},          {tone::kText, kInk},
     {tone::kQuiet, kInk},          {tone::kAccent, 0xFF6E2E00},  {tone::kAccentPale, 0xFFFFE6C8},
     {tone::kAccentDark, kInk},     {tone::kGood, 0xFF1E4B00},    {tone::kWarn, 0xFF00288C},
@@ -48,8 +48,8 @@ Fonts load_participant_fonts(double unit, const std::set<char32_t>& letters) {
                                           {height(kBody), FontWeight::regular},
                                           {height(kBody), FontWeight::bold},
                                           {height(kTitleSize), FontWeight::bold}}};
-  const std::vector<ImFont*> loaded = load_letters(sizes, letters);
-  return {loaded[0], loaded[1], loaded[2], loaded[3]};
+  const std::vector<ImFont*> loaded_fonts = load_letters(sizes, letters);
+  return {loaded_fonts[0], loaded_fonts[1], loaded_fonts[2], loaded_fonts[3]};
 }
 
 Canvas::Canvas(ImDrawList& list, const Fonts& fonts, Vec2 size, const Attention& attention,
@@ -78,10 +78,10 @@ ImFont* Canvas::font(Letters letters) const {
   return fonts_.body;
 }
 
-std::uint32_t Canvas::seen(std::uint32_t colour) const noexcept {
+std::uint32_t Canvas::contrast_colour(std::uint32_t colour) const noexcept {
   if (!high_contrast_) return colour;
-  const auto* const found = std::ranges::find(kContrasting, colour, &Contrasting::usual);
-  return found == std::end(kContrasting) ? colour : found->high;
+  const auto* const pair = std::ranges::find(kContrastPairs, colour, &ContrastPair::usual);
+  return pair == std::end(kContrastPairs) ? colour : pair->high;
 }
 
 std::vector<TextLine> Canvas::lines(Letters letters, const std::string& text, double width,
@@ -97,11 +97,11 @@ double Canvas::measure(Letters letters, const std::string& text, double width,
          std::ceil(1.25 * shrink * static_cast<double>(font(letters)->FontSize));
 }
 
-void Canvas::look_for_missing(const ImFont& face, const std::string& text) {
+void Canvas::collect_missing_letters(const ImFont& face, const std::string& text) {
   for (const char32_t letter : code_points(text)) {
-    const bool is_there = letter <= U' ' || letter > IM_UNICODE_CODEPOINT_MAX ||
-                          face.FindGlyphNoFallback(static_cast<ImWchar>(letter)) != nullptr;
-    if (!is_there) missing_.insert(letter);
+    const bool has_glyph = letter <= U' ' || letter > IM_UNICODE_CODEPOINT_MAX ||
+                           face.FindGlyphNoFallback(static_cast<ImWchar>(letter)) != nullptr;
+    if (!has_glyph) missing_letters_.insert(letter);
   }
 }
 
@@ -119,12 +119,12 @@ std::vector<TextLine> Canvas::balanced_lines(Letters letters, const std::string&
   double wide = width;
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (narrow + wide);
-    auto tried = lines(letters, text, middle, shrink);
-    if (tried.size() > best.size()) {
+    auto candidate = lines(letters, text, middle, shrink);
+    if (candidate.size() > best.size()) {
       narrow = middle;
     } else {
       wide = middle;
-      best = std::move(tried);
+      best = std::move(candidate);
     }
   }
   return best;
@@ -135,7 +135,7 @@ void Canvas::draw_line(const TextLine& line, Letters letters, Vec2 at, double si
   for (const TextRun& run : line.runs) {
     ImFont& face = run.bold ? *fonts_.strong : *font(letters);
     const bool is_bold = &face == fonts_.strong || &face == fonts_.title;
-    look_for_missing(face, run.text);
+    collect_missing_letters(face, run.text);
     const auto draw = [&](double x) {
       list_.AddText(&face, static_cast<float>(size), to_imgui(x, at.y), colour, run.text.c_str());
     };
@@ -147,65 +147,67 @@ void Canvas::draw_line(const TextLine& line, Letters letters, Vec2 at, double si
   }
 }
 
-double Canvas::text(const Box& room, Letters letters, std::uint32_t colour, const std::string& text,
-                    Align align, double shrink) {
+double Canvas::draw_text(const Box& room, Letters letters, std::uint32_t colour,
+                         const std::string& text, Align align, double shrink) {
   ImFont& face = *font(letters);
   const double size = shrink * static_cast<double>(face.FontSize);
   const double line_height = std::ceil(1.25 * size);
   double y = std::round(room.y);
-  Box taken{room.right(), y, 0.0, 0.0};
+  Box text_box{room.right(), y, 0.0, 0.0};
   double right = room.x;
-  const bool balances = align == Align::centre;
-  for (const TextLine& line : balances ? balanced_lines(letters, text, room.width, shrink)
-                                       : lines(letters, text, room.width, shrink)) {
+  const bool is_balanced = align == Align::centre;
+  for (const TextLine& line : is_balanced ? balanced_lines(letters, text, room.width, shrink)
+                                          : lines(letters, text, room.width, shrink)) {
     double x = room.x;
     if (align == Align::centre) x += (room.width - line.width) / 2.0;
     if (align == Align::right) x += room.width - line.width;
     draw_line(line, letters, {std::round(x), y + std::floor((line_height - size) / 2.0)}, size,
-              seen(colour));
+              contrast_colour(colour));
     if (line.width > 0.0) {
-      taken.x = std::min(taken.x, x);
+      text_box.x = std::min(text_box.x, x);
       right = std::max(right, x + line.width);
     }
     y += line_height;
   }
-  taken.width = std::max(0.0, right - taken.x);
-  taken.height = y - taken.y;
-  texts_.push_back({text, taken, room});
-  return taken.height;
+  text_box.width = std::max(0.0, right - text_box.x);
+  text_box.height = y - text_box.y;
+  texts_.push_back({text, text_box, room});
+  return text_box.height;
 }
 
-void Canvas::label(const Box& room, Letters letters, std::uint32_t colour, const std::string& text,
-                   Align align) {
+void Canvas::draw_label(const Box& room, Letters letters, std::uint32_t colour,
+                        const std::string& text, Align align) {
   double shrink = 1.0;
   double height = measure(letters, text, room.width, shrink);
-  while (height > room.height && shrink > kSmallest) {
-    shrink *= kSmallerBy;
+  while (height > room.height && shrink > kMinShrink) {
+    shrink *= kShrinkFactor;
     height = measure(letters, text, room.width, shrink);
   }
-  Box placed = room;
-  placed.y = std::floor(room.y + (room.height - height) / 2.0);
-  placed.height = height;
-  this->text(placed, letters, colour, text, align, shrink);
+  Box line_box = room;
+  line_box.y = std::floor(room.y + (room.height - height) / 2.0);
+  line_box.height = height;
+  draw_text(line_box, letters, colour, text, align, shrink);
 }
 
 void Canvas::fill(const Box& box, std::uint32_t colour, double rounding) {
-  list_.AddRectFilled(to_imgui(box.x, box.y), to_imgui(box.right(), box.bottom()), seen(colour),
-                      static_cast<float>(rounding));
+  list_.AddRectFilled(to_imgui(box.x, box.y), to_imgui(box.right(), box.bottom()),
+                      contrast_colour(colour), static_cast<float>(rounding));
 }
 
-void Canvas::curve(const std::array<Vec2, 4>& points, double thickness, std::uint32_t colour) {
+void Canvas::draw_curve(const std::array<Vec2, 4>& points, double thickness, std::uint32_t colour) {
   const auto at = [&points](std::size_t i) { return to_imgui(points[i].x, points[i].y); };
   const auto radius = static_cast<float>(thickness / 2.0);
-  list_.AddBezierCubic(at(0), at(1), at(2), at(3), seen(colour), static_cast<float>(thickness), 32);
-  list_.AddCircleFilled(at(0), radius, seen(colour), 32);
-  list_.AddCircleFilled(at(3), radius, seen(colour), 32);
+  list_.AddBezierCubic(at(0), at(1), at(2), at(3), contrast_colour(colour),
+                       static_cast<float>(thickness), 32);
+  list_.AddCircleFilled(at(0), radius, contrast_colour(colour), 32);
+  list_.AddCircleFilled(at(3), radius, contrast_colour(colour), 32);
 }
 
-void Canvas::area(std::span<const Vec2> corners, std::uint32_t colour) {
+void Canvas::fill_area(std::span<const Vec2> corners, std::uint32_t colour) {
   std::vector<ImVec2> points;
   for (const Vec2 corner : corners) points.push_back(to_imgui(corner.x, corner.y));
-  list_.AddConvexPolyFilled(points.data(), static_cast<int>(points.size()), seen(colour));
+  list_.AddConvexPolyFilled(points.data(), static_cast<int>(points.size()),
+                            contrast_colour(colour));
 }
 
 void Canvas::clip_to(const Box& box) {
@@ -217,41 +219,42 @@ void Canvas::end_clip() {
 }
 
 void Canvas::outline(const Box& box, std::uint32_t colour, double thickness, double rounding) {
-  list_.AddRect(to_imgui(box.x, box.y), to_imgui(box.right(), box.bottom()), seen(colour),
-                static_cast<float>(rounding), 0, static_cast<float>(thickness));
+  list_.AddRect(to_imgui(box.x, box.y), to_imgui(box.right(), box.bottom()),
+                contrast_colour(colour), static_cast<float>(rounding), 0,
+                static_cast<float>(thickness));
 }
 
-void Canvas::focus_ring(int id, const Box& box, double rounding) {
+void Canvas::draw_focus_ring(int id, const Box& box, double rounding) {
   if (attention_.focus != id) return;
   outline(box.inset(-5.0 * unit_), tone::kAccent, 3.0 * unit_, rounding + 5.0 * unit_);
 }
 
-void Canvas::button(int id, const Box& box, const std::string& label, ButtonKind kind, bool enabled,
-                    bool chosen) {
+void Canvas::draw_button(int id, const Box& box, const std::string& label, ButtonKind kind,
+                         bool enabled, bool chosen) {
   const double rounding = 12.0 * unit_;
-  const bool lit = enabled && attention_.hover == id;
-  const bool filled = kind == ButtonKind::primary || chosen;
-  std::uint32_t ground = filled ? tone::kAccent : tone::kCard;
-  if (lit) ground = filled ? tone::kAccentDark : tone::kAccentPale;
+  const bool is_hovered = enabled && attention_.hover == id;
+  const bool is_filled = kind == ButtonKind::primary || chosen;
+  std::uint32_t ground = is_filled ? tone::kAccent : tone::kCard;
+  if (is_hovered) ground = is_filled ? tone::kAccentDark : tone::kAccentPale;
   if (!enabled && !chosen) ground = tone::kDisabled;
   fill(box, ground, rounding);
-  if (!filled) outline(box, lit ? tone::kAccent : tone::kEdge, 1.5 * unit_, rounding);
-  std::uint32_t letters = filled ? tone::kWhite : tone::kText;
+  if (!is_filled) outline(box, is_hovered ? tone::kAccent : tone::kEdge, 1.5 * unit_, rounding);
+  std::uint32_t letters = is_filled ? tone::kWhite : tone::kText;
   if (!enabled && !chosen) letters = tone::kQuiet;
-  const bool in_line = kind == ButtonKind::line;
+  const bool is_line = kind == ButtonKind::line;
   Box inside = box.inset(8.0 * unit_);
-  if (in_line) {
+  if (is_line) {
     inside.x += 16.0 * unit_;
     inside.width -= 32.0 * unit_;
   }
-  this->label(inside, kind == ButtonKind::primary ? Letters::strong : Letters::body, letters, label,
-              in_line ? Align::left : Align::centre);
+  draw_label(inside, kind == ButtonKind::primary ? Letters::strong : Letters::body, letters, label,
+             is_line ? Align::left : Align::centre);
   if (!enabled) return;
-  target(id, box);
-  focus_ring(id, box, rounding);
+  add_target(id, box);
+  draw_focus_ring(id, box, rounding);
 }
 
-void Canvas::picture(PictureShelf& shelf, const std::string& label, const Box& box) {
+void Canvas::draw_picture(PictureShelf& shelf, const std::string& label, const Box& box) {
   const double x = std::round(box.x);
   const double y = std::round(box.y);
   const double width = std::round(box.width);

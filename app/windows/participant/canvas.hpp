@@ -16,7 +16,7 @@ struct ImFont;
 
 namespace touchtrial::app {
 
-/// Window units from the top-left corner.
+/// A rectangle in window units from the top-left corner.
 struct Box {
   double x = 0.0;
   double y = 0.0;
@@ -28,9 +28,9 @@ struct Box {
   [[nodiscard]] constexpr bool contains(Vec2 point) const noexcept {
     return point.x >= x && point.y >= y && point.x < right() && point.y < bottom();
   }
-  /// Smaller by this on every side.
-  [[nodiscard]] constexpr Box inset(double by) const noexcept {
-    return {x + by, y + by, width - 2.0 * by, height - 2.0 * by};
+  /// Shrinks the box on every side.
+  [[nodiscard]] constexpr Box inset(double margin) const noexcept {
+    return {x + margin, y + margin, width - 2.0 * margin, height - 2.0 * margin};
   }
 };
 
@@ -75,18 +75,18 @@ struct Fonts {
   ImFont* title = nullptr;
 };
 
-/// \return window units per unit of the design, whose window is 1280 x 720
+/// \return window units per design unit; the design's window is 1280 x 720 units
 [[nodiscard]] double design_unit(Vec2 size) noexcept;
 
 /// Replaces the fonts of the current context, as load_letters.
-/// \param unit  window units per unit of the design, times the letters' scale
+/// \param unit  design_unit times the letters' scale
 [[nodiscard]] Fonts load_participant_fonts(double unit, const std::set<char32_t>& letters = {});
 
 /// Provides pictures as textures.
 class PictureShelf {
  public:
   virtual ~PictureShelf() = default;
-  /// \param label  of the picture
+  /// \param label  label of the picture
   /// \return width and height, mm
   [[nodiscard]] virtual Vec2 size_mm(const std::string& label) const = 0;
   /// \param width,height  window units
@@ -106,7 +106,7 @@ struct PlacedText {
   Box room;  ///< available
 };
 
-/// Targets that have attention; -1: none.
+/// The targets in focus, hovered or held; -1: none.
 struct Attention {
   int focus = -1;  ///< chosen by keys
   int hover = -1;  ///< under the pointer
@@ -128,33 +128,35 @@ class Canvas {
   [[nodiscard]] double width_of(Letters letters, const std::string& text) const;
   /// Draws text from the top of the room, wrapped at its width.
   /// \return the height of the text
-  double text(const Box& room, Letters letters, std::uint32_t colour, const std::string& text,
-              Align align = Align::centre, double shrink = 1.0);
+  double draw_text(const Box& room, Letters letters, std::uint32_t colour, const std::string& text,
+                   Align align = Align::centre, double shrink = 1.0);
   /// Draws lines in the middle of the room's height; letters shrink if the room is too small.
-  void label(const Box& room, Letters letters, std::uint32_t colour, const std::string& text,
-             Align align = Align::centre);
+  void draw_label(const Box& room, Letters letters, std::uint32_t colour, const std::string& text,
+                  Align align = Align::centre);
 
   void fill(const Box& box, std::uint32_t colour, double rounding = 0.0);
   void outline(const Box& box, std::uint32_t colour, double thickness, double rounding = 0.0);
   /// A line with round ends: a cubic Bezier curve through its first and last point.
-  void curve(const std::array<Vec2, 4>& points, double thickness, std::uint32_t colour);
-  /// \param corners  of a convex area, clockwise
-  void area(std::span<const Vec2> corners, std::uint32_t colour);
+  void draw_curve(const std::array<Vec2, 4>& points, double thickness, std::uint32_t colour);
+  /// \param corners  corners of a convex area, clockwise
+  void fill_area(std::span<const Vec2> corners, std::uint32_t colour);
   /// Clips drawing to the box until `end_clip`.
   void clip_to(const Box& box);
   void end_clip();
-  void button(int id, const Box& box, const std::string& label, ButtonKind kind,
-              bool enabled = true, bool chosen = false);
+  void draw_button(int id, const Box& box, const std::string& label, ButtonKind kind,
+                   bool enabled = true, bool chosen = false);
   /// Draws a ring around the box if the target has the focus.
-  void focus_ring(int id, const Box& box, double rounding);
-  void target(int id, const Box& box) { targets_.push_back({id, box}); }
-  void picture(PictureShelf& shelf, const std::string& label, const Box& box);
+  void draw_focus_ring(int id, const Box& box, double rounding);
+  void add_target(int id, const Box& box) { targets_.push_back({id, box}); }
+  void draw_picture(PictureShelf& shelf, const std::string& label, const Box& box);
 
   [[nodiscard]] const Attention& attention() const noexcept { return attention_; }
   [[nodiscard]] const std::vector<Target>& targets() const noexcept { return targets_; }
   [[nodiscard]] const std::vector<PlacedText>& texts() const noexcept { return texts_; }
-  /// Letters of the texts that the fonts do not have.
-  [[nodiscard]] const std::set<char32_t>& missing() const noexcept { return missing_; }
+  /// Letters of the texts that the fonts lack.
+  [[nodiscard]] const std::set<char32_t>& missing_letters() const noexcept {
+    return missing_letters_;
+  }
 
  private:
   [[nodiscard]] ImFont* font(Letters letters) const;
@@ -164,9 +166,9 @@ class Canvas {
   [[nodiscard]] std::vector<TextLine> balanced_lines(Letters letters, const std::string& text,
                                                      double width, double shrink) const;
   void draw_line(const TextLine& line, Letters letters, Vec2 at, double size, std::uint32_t colour);
-  /// The replacement for a colour of the design.
-  [[nodiscard]] std::uint32_t seen(std::uint32_t colour) const noexcept;
-  void look_for_missing(const ImFont& face, const std::string& text);
+  /// The colour as drawn: replaced for high contrast.
+  [[nodiscard]] std::uint32_t contrast_colour(std::uint32_t colour) const noexcept;
+  void collect_missing_letters(const ImFont& face, const std::string& text);
 
   ImDrawList& list_;
   Fonts fonts_;
@@ -176,7 +178,7 @@ class Canvas {
   bool high_contrast_;
   std::vector<Target> targets_;
   std::vector<PlacedText> texts_;
-  std::set<char32_t> missing_;
+  std::set<char32_t> missing_letters_;
 };
 
 }  // namespace touchtrial::app

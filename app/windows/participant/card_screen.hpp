@@ -14,7 +14,7 @@ class CardScreen final : public Screen {
   /// \param mm_per_unit  the initial estimate
   explicit CardScreen(double mm_per_unit);
 
-  /// The scale at which frame and card are equally large: 25.4 / 400 to 25.4 / 40.
+  /// The scale at which the frame matches the card: 25.4 / 400 to 25.4 / 40.
   [[nodiscard]] double mm_per_unit() const noexcept;
 
  private:
@@ -23,9 +23,9 @@ class CardScreen final : public Screen {
     return session::StepReply{};
   }
   [[nodiscard]] int default_target() const noexcept override { return kNextTarget; }
-  bool takes_key(const InputEvent& event) override;
+  bool handle_special_key(const InputEvent& event) override;
 
-  double width_;  ///< of the frame, window units
+  double width_;  ///< width of the frame, window units
 };
 
 }  // namespace touchtrial::app

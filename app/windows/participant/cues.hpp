@@ -20,7 +20,7 @@ class Cues {
  public:
   virtual ~Cues() = default;
   /// Starts the sound and returns at once. Any thread except the servo's may call it.
-  virtual void tone(Cue cue) noexcept = 0;
+  virtual void play(Cue cue) noexcept = 0;
 };
 
 }  // namespace touchtrial::app

@@ -17,31 +17,32 @@ constexpr double kGoodSpeedMmS[] = {50.0, 150.0};
 constexpr double kFullSpeedMmS = 250.0;
 
 constexpr double kExploringMargin = 40.0;
-constexpr double kBelow = 92.0;  ///< height of a line of text, or of the bars in practice
+constexpr double kBottomHeight = 92.0;  ///< height of a line of text, or of the bars in practice
 
-/// A bar with a marked good range; all values are shares of its length.
+/// A bar with its good range marked; all values are fractions of its length.
 struct Bar {
   std::string name;
   double share = 0.0;
-  double good_from = 0.0;
-  double good_to = 0.0;
-  bool too_much = false;
+  double good_low = 0.0;
+  double good_high = 0.0;
+  bool is_too_much = false;
 };
 
 void paint_bar(Canvas& canvas, const Box& room, const Bar& bar) {
   const double unit = canvas.unit();
-  const double name = 120.0 * unit;
-  canvas.label({room.x, room.y, name, room.height}, Letters::small, tone::kQuiet, bar.name,
-               Align::left);
-  const Box track = {room.x + name, room.y + (room.height - 14.0 * unit) / 2.0, room.width - name,
-                     14.0 * unit};
+  const double name_width = 120.0 * unit;
+  canvas.draw_label({room.x, room.y, name_width, room.height}, Letters::small, tone::kQuiet,
+                    bar.name, Align::left);
+  const Box track = {room.x + name_width, room.y + (room.height - 14.0 * unit) / 2.0,
+                     room.width - name_width, 14.0 * unit};
   canvas.fill(track, tone::kTrack, 7.0 * unit);
-  canvas.fill({track.x + bar.good_from * track.width, track.y - 5.0 * unit,
-               (bar.good_to - bar.good_from) * track.width, track.height + 10.0 * unit},
+  canvas.fill({track.x + bar.good_low * track.width, track.y - 5.0 * unit,
+               (bar.good_high - bar.good_low) * track.width, track.height + 10.0 * unit},
               0x40000000U | (tone::kGood & 0xFFFFFFU), 4.0 * unit);
   const double share = std::clamp(bar.share, 0.0, 1.0);
-  const bool good = share >= bar.good_from && share <= bar.good_to;
-  const std::uint32_t colour = bar.too_much ? tone::kWarn : (good ? tone::kGood : tone::kAccent);
+  const bool is_good = share >= bar.good_low && share <= bar.good_high;
+  const std::uint32_t colour =
+      bar.is_too_much ? tone::kWarn : (is_good ? tone::kGood : tone::kAccent);
   if (share > 0.0) {
     canvas.fill({track.x, track.y, std::max(share * track.width, track.height), track.height},
                 colour, 7.0 * unit);
@@ -53,84 +54,88 @@ void paint_bar(Canvas& canvas, const Box& room, const Bar& bar) {
 PlaneOnScreen place_plane(Vec2 window, Vec2 plane_mm, double mm_per_unit) {
   const double unit = design_unit(window);
   const Vec2 room = {window.x - 2.0 * kExploringMargin * unit,
-                     window.y - (2.0 * kExploringMargin + kBelow) * unit};
-  const double least =
+                     window.y - (2.0 * kExploringMargin + kBottomHeight) * unit};
+  const double min_mm_per_unit =
       std::max(plane_mm.x / std::max(room.x, 1.0), plane_mm.y / std::max(room.y, 1.0));
-  PlaneOnScreen placed;
-  placed.mm_per_unit = std::max(mm_per_unit, least);
-  const Vec2 drawn = (1.0 / placed.mm_per_unit) * plane_mm;
-  placed.corner = {std::round((window.x - drawn.x) / 2.0),
-                   std::round((window.y - kBelow * unit - drawn.y) / 2.0)};
-  return placed;
+  PlaneOnScreen plane_area;
+  plane_area.mm_per_unit = std::max(mm_per_unit, min_mm_per_unit);
+  const Vec2 drawn_size = (1.0 / plane_area.mm_per_unit) * plane_mm;
+  plane_area.corner = {std::round((window.x - drawn_size.x) / 2.0),
+                       std::round((window.y - kBottomHeight * unit - drawn_size.y) / 2.0)};
+  return plane_area;
 }
 
 void ExploringScreen::paint(Canvas& canvas) {
   if (view_.pointer != nullptr) paint_plane(canvas);
   if (view_.interval) paint_interval(canvas);
   if (view_.bars != nullptr) paint_bars(canvas);
-  if (view_.asks_for_touch == nullptr || !*view_.asks_for_touch) return;
+  if (view_.shows_touch_request == nullptr || !*view_.shows_touch_request) return;
   const double unit = canvas.unit();
   const double top = view_.pointer != nullptr ? 4.0 * unit : 0.45 * canvas.size().y;
-  canvas.label({0.0, top, canvas.size().x, 32.0 * unit}, Letters::strong, tone::kWarn,
-               context_.words->touch_first);
+  canvas.draw_label({0.0, top, canvas.size().x, 32.0 * unit}, Letters::strong, tone::kWarn,
+                    context_.words->touch_first);
 }
 
 void ExploringScreen::paint_plane(Canvas& canvas) {
   const double unit = canvas.unit();
   const Vec2 plane_mm = {view_.plane.width_mm(), view_.plane.height_mm()};
-  const PlaneOnScreen placed = place_plane(canvas.size(), plane_mm, context_.glass->mm_per_unit);
-  const Vec2 drawn = (1.0 / placed.mm_per_unit) * plane_mm;
-  const Box plane = {placed.corner.x, placed.corner.y, drawn.x, drawn.y};
+  const PlaneOnScreen plane_area =
+      place_plane(canvas.size(), plane_mm, context_.physical_scale->mm_per_unit);
+  const Vec2 drawn_size = (1.0 / plane_area.mm_per_unit) * plane_mm;
+  const Box plane = {plane_area.corner.x, plane_area.corner.y, drawn_size.x, drawn_size.y};
   canvas.fill(plane, 0xFFF7F6F5);
   canvas.outline(plane, 0xFFA09A94, 1.0);
   // In practice the bars are drawn below.
-  const double up = (view_.bars == nullptr ? 84.0 : 126.0) * unit;
-  canvas.label({0.0, canvas.size().y - up, canvas.size().x, 30.0 * unit}, Letters::small,
-               tone::kQuiet, below_plane());
+  const double bottom_distance = (view_.bars == nullptr ? 84.0 : 126.0) * unit;
+  canvas.draw_label({0.0, canvas.size().y - bottom_distance, canvas.size().x, 30.0 * unit},
+                    Letters::small, tone::kQuiet, text_below_plane());
   const device::StylusState stylus = view_.pointer->stylus();
   if (stylus.sequence == 0) return;
-  draw_stylus(placed.corner + (1.0 / placed.mm_per_unit) * stylus.position_mm,
+  draw_stylus(plane_area.corner + (1.0 / plane_area.mm_per_unit) * stylus.position_mm,
               view_.pressed->load(), static_cast<float>(unit));
 }
 
-const std::string& ExploringScreen::below_plane() const {
+const std::string& ExploringScreen::text_below_plane() const {
   const Words& words = *context_.words;
   if (!view_.interval) return words.exploring_mouse;
-  if (is_to_lift()) return words.interval_text_mouse;
+  if (must_lift()) return words.interval_text_mouse;
   return view_.interval->hand_off ? words.exploring_hand_off : words.exploring_interval_mouse;
 }
 
-/// With a plane on screen, in the margin above it; else in the middle, with the instruction.
+/// Draws title and progress above the plane if one is drawn, otherwise in the middle with the
+/// instruction.
 void ExploringScreen::paint_interval(Canvas& canvas) {
   const Words& words = *context_.words;
   const double unit = canvas.unit();
   const double middle = canvas.size().x / 2.0;
-  const std::string which = with_numbers(
-      words.interval_of, {{"interval", view_.interval->interval}, {"of", view_.interval->of}});
+  const std::string title = fill_numbers(
+      words.interval_of, {{"interval", view_.interval->interval}, {"of", view_.interval->total}});
   if (view_.pointer != nullptr) {
     const double left = middle - 80.0 * unit;
-    canvas.label({left - 420.0 * unit, 5.0 * unit, 420.0 * unit, 30.0 * unit}, Letters::strong,
-                 tone::kText, which, Align::right);
-    paint_explored(canvas, {left + 24.0 * unit, 14.0 * unit, 300.0 * unit, 12.0 * unit});
+    canvas.draw_label({left - 420.0 * unit, 5.0 * unit, 420.0 * unit, 30.0 * unit}, Letters::strong,
+                      tone::kText, title, Align::right);
+    paint_progress(canvas, {left + 24.0 * unit, 14.0 * unit, 300.0 * unit, 12.0 * unit});
     return;
   }
   const double width = 1000.0 * unit;
   const double top = 0.386 * canvas.size().y;
-  canvas.label({middle - width / 2.0, top, width, 56.0 * unit}, Letters::title, tone::kText, which);
-  const Box below{middle - width / 2.0, top + 58.0 * unit, width, 66.0 * unit};
-  if (is_to_lift()) {
-    canvas.label(below, Letters::strong, tone::kWarn, words.interval_text);
+  canvas.draw_label({middle - width / 2.0, top, width, 56.0 * unit}, Letters::title, tone::kText,
+                    title);
+  const Box text_box{middle - width / 2.0, top + 58.0 * unit, width, 66.0 * unit};
+  if (must_lift()) {
+    canvas.draw_label(text_box, Letters::strong, tone::kWarn, words.interval_text);
   } else {
-    canvas.label(below, Letters::body, tone::kText,
-                 view_.interval->hand_off ? words.exploring_hand_off : words.exploring_interval);
+    canvas.draw_label(
+        text_box, Letters::body, tone::kText,
+        view_.interval->hand_off ? words.exploring_hand_off : words.exploring_interval);
   }
-  paint_explored(canvas, {middle - 220.0 * unit, top + 146.0 * unit, 440.0 * unit, 14.0 * unit});
+  paint_progress(canvas, {middle - 220.0 * unit, top + 146.0 * unit, 440.0 * unit, 14.0 * unit});
 }
 
-void ExploringScreen::paint_explored(Canvas& canvas, const Box& track) {
+void ExploringScreen::paint_progress(Canvas& canvas, const Box& track) {
   const double rounding = track.height / 2.0;
   canvas.fill(track, tone::kTrack, rounding);
-  const int steps = std::min(view_.explored->load(), kExploredSteps);
+  const int steps = std::min(view_.explored_steps->load(), kExploredSteps);
   if (steps <= 0) return;
   const double share = static_cast<double>(steps) / kExploredSteps;
   canvas.fill({track.x, track.y, std::max(share * track.width, track.height), track.height},
@@ -152,8 +157,8 @@ void ExploringScreen::paint_bars(Canvas& canvas) {
             {words.speed, static_cast<double>(view_.bars->speed_mm_s) / kFullSpeedMmS,
              kGoodSpeedMmS[0] / kFullSpeedMmS, kGoodSpeedMmS[1] / kFullSpeedMmS, false});
   if (!too_hard) return;
-  canvas.label({x + width + 24.0 * unit, y, 300.0 * unit, 34.0 * unit}, Letters::strong,
-               tone::kWarn, words.too_hard, Align::left);
+  canvas.draw_label({x + width + 24.0 * unit, y, 300.0 * unit, 34.0 * unit}, Letters::strong,
+                    tone::kWarn, words.too_hard, Align::left);
 }
 
 }  // namespace touchtrial::app

@@ -11,8 +11,9 @@
 
 namespace touchtrial::app {
 
-/// Values of the practice bars. Written by the servo's listener, read by the drawing thread.
-struct FeltNow {
+/// Force and speed for the practice bars. Written by the servo's listener, read by the drawing
+/// thread.
+struct HandReadings {
   std::atomic<float> force_n{0.0F};
   std::atomic<float> speed_mm_s{0.0F};
 };
@@ -24,20 +25,23 @@ struct PlaneOnScreen {
 };
 [[nodiscard]] PlaneOnScreen place_plane(Vec2 window, Vec2 plane_mm, double mm_per_unit);
 
-/// An interval's bar grows in steps, so that the screen is redrawn rarely.
+/// The bar of an interval grows in this number of steps, so that the screen is redrawn rarely.
 inline constexpr int kExploredSteps = 40;
 
 /// The data of the exploring screen.
 struct ExploringView {
-  const FeltNow* bars = nullptr;               ///< in practice; null: no bars
-  device::PointerExchange* pointer = nullptr;  ///< of the mouse device; null: no plane or stylus
+  const HandReadings* bars = nullptr;  ///< readings to show in practice; null: no bars
+  device::PointerExchange* pointer =
+      nullptr;  ///< the mouse device's exchange; null: no plane or stylus
   const std::atomic<bool>* pressed = nullptr;  ///< the mouse button; set if `pointer` is
-  const std::atomic<bool>* asks_for_touch = nullptr;  ///< request to feel before answering
+  const std::atomic<bool>* shows_touch_request =
+      nullptr;  ///< asks the participant to feel before answering
   PlaneGeometry plane;
   std::optional<session::IntervalStep> interval{};  ///< the plane is one of several
-  /// The explored part of the interval, in kExploredSteps; set if `interval` is.
-  const std::atomic<int>* explored = nullptr;
-  const std::atomic<bool>* has_lifted = nullptr;  ///< the plane is on; set if `interval` is
+  /// Progress of the interval, from 0 to kExploredSteps; set if `interval` is.
+  const std::atomic<int>* explored_steps = nullptr;
+  const std::atomic<bool>* has_lifted =
+      nullptr;  ///< whether the hand was lifted since the announcement; set if `interval` is
 };
 
 class ExploringScreen final : public Screen {
@@ -45,7 +49,7 @@ class ExploringScreen final : public Screen {
   ExploringScreen(const ExploringView& view, const ScreenContext& context)
       : view_(view), context_(context) {}
 
-  [[nodiscard]] bool is_alive() const noexcept override {
+  [[nodiscard]] bool is_animated() const noexcept override {
     return view_.bars != nullptr || view_.pointer != nullptr;
   }
 
@@ -57,11 +61,11 @@ class ExploringScreen final : public Screen {
   void paint_plane(Canvas& canvas);
   void paint_bars(Canvas& canvas);
   void paint_interval(Canvas& canvas);
-  [[nodiscard]] bool is_to_lift() const noexcept {
+  [[nodiscard]] bool must_lift() const noexcept {
     return view_.interval && !view_.interval->hand_off && !view_.has_lifted->load();
   }
-  void paint_explored(Canvas& canvas, const Box& track);
-  [[nodiscard]] const std::string& below_plane() const;
+  void paint_progress(Canvas& canvas, const Box& track);
+  [[nodiscard]] const std::string& text_below_plane() const;
 
   ExploringView view_;
   ScreenContext context_;

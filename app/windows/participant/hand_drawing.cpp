@@ -9,7 +9,7 @@ namespace {
 
 using Curve = std::array<Vec2, 4>;
 
-// Places in the drawing, which is 300 wide; its y axis begins at kTopY.
+// Coordinates in the drawing, which is 300 wide; its y axis starts at kTopY.
 constexpr double kTopY = 45.0;
 constexpr double kDrawingWidth = 300.0;
 constexpr double kDrawingHeight = 245.0;
@@ -30,52 +30,53 @@ class HandDrawing {
       : canvas_(canvas), box_(box), scale_(box.width / kDrawingWidth) {}
 
   void draw() {
-    area(kPlate, tone::kEdge);
-    std::array<Vec2, 4> inside = kPlate;
+    draw_area(kPlate, tone::kEdge);
+    std::array<Vec2, 4> inner_plate = kPlate;
     const Vec2 centre = {150.0, 231.0};
-    for (Vec2& corner : inside) corner = centre + 0.975 * (corner - centre);
-    area(inside, tone::kGround);
-    limb(kMiddleFinger, 20.0);
-    curve(kPen, 17.0, tone::kText);
-    curve(kPen, 12.0, tone::kCard);
-    area(kTip, tone::kText);
-    curve(kForearm, 62.0 + kRim, tone::kText);
-    curve(kPalm, 58.0 + kRim, tone::kText);
-    curve(kForearm, 62.0, tone::kAccentPale);
-    curve(kPalm, 58.0, tone::kAccentPale);
-    limb(kThumb, 21.0);
-    limb(kIndexFinger, 21.0);
-    curve(kInsideOfPalm, 50.0, tone::kAccentPale);
-    arrow({170, 249}, {205, 249}, tone::kAccent);
-    arrow({170, 249}, {45, 249}, tone::kAccent);
-    arrow({92, 165}, {92, 208}, tone::kGood);
+    for (Vec2& corner : inner_plate) corner = centre + 0.975 * (corner - centre);
+    draw_area(inner_plate, tone::kGround);
+    draw_limb(kMiddleFinger, 20.0);
+    draw_curve(kPen, 17.0, tone::kText);
+    draw_curve(kPen, 12.0, tone::kCard);
+    draw_area(kTip, tone::kText);
+    draw_curve(kForearm, 62.0 + kRim, tone::kText);
+    draw_curve(kPalm, 58.0 + kRim, tone::kText);
+    draw_curve(kForearm, 62.0, tone::kAccentPale);
+    draw_curve(kPalm, 58.0, tone::kAccentPale);
+    draw_limb(kThumb, 21.0);
+    draw_limb(kIndexFinger, 21.0);
+    draw_curve(kInsideOfPalm, 50.0, tone::kAccentPale);
+    draw_arrow({170, 249}, {205, 249}, tone::kAccent);
+    draw_arrow({170, 249}, {45, 249}, tone::kAccent);
+    draw_arrow({92, 165}, {92, 208}, tone::kGood);
   }
 
  private:
   static constexpr double kRim = 6.0;
 
-  [[nodiscard]] Vec2 placed(Vec2 point) const {
+  [[nodiscard]] Vec2 to_canvas(Vec2 point) const {
     return {box_.x + scale_ * point.x, box_.y + scale_ * (point.y - kTopY)};
   }
-  void curve(const Curve& points, double thickness, std::uint32_t colour) {
-    canvas_.curve({placed(points[0]), placed(points[1]), placed(points[2]), placed(points[3])},
-                  scale_ * thickness, colour);
+  void draw_curve(const Curve& points, double thickness, std::uint32_t colour) {
+    canvas_.draw_curve(
+        {to_canvas(points[0]), to_canvas(points[1]), to_canvas(points[2]), to_canvas(points[3])},
+        scale_ * thickness, colour);
   }
   template <std::size_t count>
-  void area(std::array<Vec2, count> corners, std::uint32_t colour) {
-    for (Vec2& corner : corners) corner = placed(corner);
-    canvas_.area(corners, colour);
+  void draw_area(std::array<Vec2, count> corners, std::uint32_t colour) {
+    for (Vec2& corner : corners) corner = to_canvas(corner);
+    canvas_.fill_area(corners, colour);
   }
-  void limb(const Curve& points, double thickness) {
-    curve(points, thickness + kRim, tone::kText);
-    curve(points, thickness, tone::kAccentPale);
+  void draw_limb(const Curve& points, double thickness) {
+    draw_curve(points, thickness + kRim, tone::kText);
+    draw_curve(points, thickness, tone::kAccentPale);
   }
-  void arrow(Vec2 from, Vec2 to, std::uint32_t colour) {
-    const Vec2 way = to - from;
-    const Vec2 ahead = (11.0 / std::hypot(way.x, way.y)) * way;
-    const Vec2 aside = {-0.7 * ahead.y, 0.7 * ahead.x};
-    curve({from, from + (1.0 / 3.0) * way, from + (2.0 / 3.0) * way, to}, 4.0, colour);
-    area(std::array<Vec2, 3>{to + ahead, to + aside, to - aside}, colour);
+  void draw_arrow(Vec2 start, Vec2 end, std::uint32_t colour) {
+    const Vec2 shaft = end - start;
+    const Vec2 forward = (11.0 / std::hypot(shaft.x, shaft.y)) * shaft;
+    const Vec2 sideways = {-0.7 * forward.y, 0.7 * forward.x};
+    draw_curve({start, start + (1.0 / 3.0) * shaft, start + (2.0 / 3.0) * shaft, end}, 4.0, colour);
+    draw_area(std::array<Vec2, 3>{end + forward, end + sideways, end - sideways}, colour);
   }
 
   Canvas& canvas_;

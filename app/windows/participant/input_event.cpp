@@ -24,8 +24,8 @@ constexpr std::array<std::pair<int, Key>, 11> kKeys = {{
 
 Key key_of(int key, bool shift) {
   if (key == GLFW_KEY_TAB) return shift ? Key::back_tab : Key::tab;
-  const auto found = std::ranges::find(kKeys, key, &std::pair<int, Key>::first);
-  return found == kKeys.end() ? Key::none : found->second;
+  const auto entry = std::ranges::find(kKeys, key, &std::pair<int, Key>::first);
+  return entry == kKeys.end() ? Key::none : entry->second;
 }
 
 constexpr std::array<std::pair<int, Key>, 6> kPadKeys = {{

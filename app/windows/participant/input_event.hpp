@@ -1,5 +1,4 @@
-/// \file Input events of a participant by keyboard, mouse or gamepad, with times; converted from
-///   GLFW's.
+/// \file A participant's input from keyboard, mouse or gamepad, converted from GLFW's events.
 #pragma once
 
 #include "core/vec.hpp"
@@ -13,7 +12,7 @@ namespace touchtrial::app {
 
 enum class Key {
   none,
-  enter,  ///< also the keypad's, and A of a gamepad
+  enter,  ///< also Enter on the keypad, and A of a gamepad
   space,
   left,
   right,
@@ -25,17 +24,17 @@ enum class Key {
   remove,
   home,
   end,
-  digit,  ///< also the keypad's
+  digit,  ///< also a digit on the keypad
 };
 
 struct InputEvent {
   using Time = std::chrono::steady_clock::time_point;
   enum class Kind {
-    key,     ///< went down
-    repeat,  ///< held down: the system repeats it
-    letter,  ///< typed
-    moved,
-    pressed,  ///< left button
+    key,      ///< a key is pressed
+    repeat,   ///< a held key is repeated by the system
+    letter,   ///< a letter is typed
+    moved,    ///< the pointer has moved
+    pressed,  ///< the left button is pressed
     released,
   };
   Kind kind = Kind::key;
@@ -44,17 +43,17 @@ struct InputEvent {
   int digit = 0;        ///< 0 to 9
   bool shift = false;   ///< held down with the key
   char32_t letter = 0;  ///< Unicode
-  Vec2 position{};      ///< of the pointer, window units from the top-left corner
+  Vec2 position{};      ///< position of the pointer, window units from the top-left corner
 };
 
 /// Call it on the main thread.
 /// \param key,action,modifiers  as GLFW's key callback receives them
-/// \return an event of Key::none for a key without meaning or a key that is released
+/// \return an event with Key::none if the key is released or has no meaning
 [[nodiscard]] InputEvent event_of_key(int key, int action, int modifiers);
 
-/// Turns buttons of gamepads into keys: the cross moves, A is Enter, B is the space bar. A held
-/// button repeats, like a key. GLFW has no events for gamepads, so the time of a key is that of the
-/// poll. Belongs to the main thread.
+/// Turns gamepad buttons into keys: the D-pad is the arrow keys, A is Enter, B is the space bar. A
+/// held button repeats like a key. GLFW has no gamepad events, so a key is stamped when it is
+/// polled. Belongs to the main thread.
 class Gamepads {
  public:
   /// Reads all gamepads.
@@ -64,7 +63,7 @@ class Gamepads {
  private:
   static constexpr int kPads = 16;
   static constexpr int kButtons = 6;
-  /// When held buttons repeat next.
+  /// The time of the next repeat of each held button.
   std::array<std::array<std::optional<InputEvent::Time>, kButtons>, kPads> repeats_{};
 };
 

@@ -10,25 +10,25 @@
 
 namespace touchtrial::app {
 
-/// The participant's progress; not drawn if `of` is 0.
+/// The participant's progress; not drawn if `total` is 0.
 struct Progress {
   int done = 0;  ///< finished items, for the bar
-  int of = 0;
+  int total = 0;
   std::string text;
 };
 
 /// The progress before a trial is answered.
-/// \param trial  from 1 to `of`
-[[nodiscard]] Progress progress_of(const Words& words, int trial, int of, bool practice);
+/// \param trial  from 1 to `total`
+[[nodiscard]] Progress progress_of(const Words& words, int trial, int total, bool practice);
 void draw_progress(Canvas& canvas, const Progress& progress);
 
 /// The pictures beside a card's text.
 struct CardPictures {
-  std::vector<std::string> names;  ///< as in a page of instructions
-  PictureShelf* shelf = nullptr;   ///< of pictures from files
+  std::vector<std::string> names;  ///< names of the pictures, as on an instruction page
+  PictureShelf* shelf = nullptr;   ///< provides pictures from files
 };
 
-/// The shelf's label of a page's picture.
+/// The shelf's label for a picture on an instruction page.
 [[nodiscard]] std::string page_picture(const std::string& name);
 
 /// Draws title and text on a card in the middle of the content; letters shrink if necessary.
@@ -49,8 +49,8 @@ struct FooterButton {
   bool primary = true;
   bool enabled = true;
 };
-/// Draws buttons in the footer: Next (kNextTarget) at a fixed place in the middle, and the others
-/// to its left, in order.
+/// Draws buttons in the footer: Next (kNextTarget) at a fixed place in the middle, and the other
+/// buttons to its left, in order.
 void draw_footer(Canvas& canvas, const std::vector<FooterButton>& buttons);
 
 /// Draws a heading above the content.
@@ -61,17 +61,17 @@ Box draw_heading(Canvas& canvas, const std::string& title, const std::string& no
 /// The positions and sizes of pictures.
 struct PictureGrid {
   std::vector<Box> pictures;
-  double shown = 1.0;  ///< scale: 1 is true size, which is the largest
+  double scale = 1.0;  ///< 1 is true size, which is the maximum
 };
 
-/// Arranges pictures in the number of rows that makes them largest; of equal ones, the fewest. In
-/// little space, the gap is at most a quarter of a picture's side.
-/// \param sizes  in window units, true to scale
-/// \param below  window units that each picture needs below it
+/// Arranges pictures in the fewest rows that make them largest. If space is tight, the gap is at
+/// most a quarter of a picture's side.
+/// \param sizes  true sizes, window units
+/// \param caption_height  window units that each picture needs below it
 [[nodiscard]] PictureGrid lay_out_pictures(const std::vector<Vec2>& sizes, const Box& area,
-                                           double gap, double below);
+                                           double gap, double caption_height);
 
-/// Draws a bar of 10 mm in the scale of the pictures, and states that scale.
-void draw_scale_bar(Canvas& canvas, const Box& room, const ScreenContext& context, double shown);
+/// Draws a bar of 10 mm at the scale of the pictures, and states that scale.
+void draw_scale_bar(Canvas& canvas, const Box& room, const ScreenContext& context, double scale);
 
 }  // namespace touchtrial::app

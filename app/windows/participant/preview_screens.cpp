@@ -19,7 +19,7 @@ InputEvent pressed_key(Key key, int digit = 0) {
 /// Adds screens in their order.
 class ScreenList {
  public:
-  /// \param keys  that lead to it from the step's first page
+  /// \param keys  the keys that lead from the step's first page to the screen
   void add(const std::string& name, const session::Step& step,
            const std::vector<InputEvent>& keys = {}) {
     screens_.push_back({name, step, keys, practice_});
@@ -27,21 +27,21 @@ class ScreenList {
   void add_plane(const std::string& name) {
     screens_.push_back({name, std::nullopt, {}, practice_});
   }
-  /// One of a trial's planes, and its announcement.
-  void add_interval(const std::string& announced, const std::string& explored,
+  /// Adds one of a trial's planes, and its announcement.
+  void add_interval(const std::string& interval_name, const std::string& plane_name,
                     const session::IntervalStep& step) {
-    add(announced, step);
-    add_plane(explored);
+    add(interval_name, step);
+    add_plane(plane_name);
     screens_.back().interval = step;
   }
-  /// A step of several pages.
-  /// \param leave  the keys that leave each page
+  /// Adds the pages of a step.
+  /// \param keys_to_leave  the keys that end each page
   void add_pages(const std::string& name, const session::Step& step,
-                 const std::vector<std::vector<InputEvent>>& leave) {
+                 const std::vector<std::vector<InputEvent>>& keys_to_leave) {
     std::vector<InputEvent> keys;
-    for (std::size_t page = 0; page < leave.size(); ++page) {
+    for (std::size_t page = 0; page < keys_to_leave.size(); ++page) {
       add(page == 0 ? name : name + "-" + std::to_string(page + 1), step, keys);
-      keys.insert(keys.end(), leave[page].begin(), leave[page].end());
+      keys.insert(keys.end(), keys_to_leave[page].begin(), keys_to_leave[page].end());
     }
   }
   void add_questions(const std::string& name,
@@ -54,13 +54,13 @@ class ScreenList {
   bool practice_ = false;
 };
 
-/// A required question gets the first option, or a 1.
+/// Adds the pages of a questionnaire. A required question is answered with its first option, or 1.
 void ScreenList::add_questions(const std::string& name,
                                const std::optional<study::Questionnaire>& questionnaire) {
   if (!questionnaire) return;
-  std::vector<std::vector<InputEvent>> leave;
+  std::vector<std::vector<InputEvent>> keys_to_leave;
   for (const study::Question& question : questionnaire->questions) {
-    std::vector<InputEvent>& keys = leave.emplace_back();
+    std::vector<InputEvent>& keys = keys_to_leave.emplace_back();
     if (question.required && question.kind == study::QuestionKind::choice) {
       keys.push_back(pressed_key(Key::digit, 1));
     } else if (question.required) {
@@ -71,46 +71,48 @@ void ScreenList::add_questions(const std::string& name,
     }
     keys.push_back(pressed_key(Key::enter));
   }
-  add_pages(name, session::QuestionStep{&*questionnaire}, leave);
+  add_pages(name, session::QuestionStep{&*questionnaire}, keys_to_leave);
 }
 
-/// The keys from the choice to the confidence scale.
+/// The keys that lead from the choice to the confidence scale.
 std::vector<InputEvent> keys_to_confidence() {
   return {pressed_key(Key::digit, 1), pressed_key(Key::enter)};
 }
 
 /// The label of the picture that is shown with ratings; empty: none.
 /// \param class_index  practice classes follow the study's
-std::string rated_picture(const study::Study& study, const study::Ask& ask, int class_index) {
-  if (!std::holds_alternative<study::Rate>(ask.question)) return "";
+std::string rated_picture(const study::Study& study, const study::TrialQuestion& trial_question,
+                          int class_index) {
+  if (!std::holds_alternative<study::RatingQuestion>(trial_question.question)) return "";
   return study::picture_of(study, {.picture = class_index});
 }
 
-/// A trial's planes, with announcements if there are several.
-/// \param prefix  of the screens' names
-void add_planes(ScreenList& list, const study::Ask& ask, const std::string& prefix,
-                session::IntervalStep next) {
-  if (ask.planes == 1) return list.add_plane(prefix + "explore");
-  next.of = ask.planes;
+/// Adds a trial's planes, with announcements if there are several.
+/// \param prefix  prefix of the screens' names
+void add_planes(ScreenList& list, const study::TrialQuestion& trial_question,
+                const std::string& prefix, session::IntervalStep next) {
+  if (trial_question.planes == 1) return list.add_plane(prefix + "explore");
+  next.total = trial_question.planes;
   list.add_interval(prefix + "interval", prefix + "explore", next);
 }
 
-void add_practice(ScreenList& list, const study::Study& study, const study::Ask& ask) {
+void add_practice(ScreenList& list, const study::Study& study,
+                  const study::TrialQuestion& trial_question) {
   const study::Practice practice = study::practice_of(study);
-  const int of = static_cast<int>(practice.trials.size());
-  if (of == 0 || practice.rounds == 0) return;
+  const int trial_count = static_cast<int>(practice.trials.size());
+  if (trial_count == 0 || practice.rounds == 0) return;
   list.set_practice(true);
   list.add("practice", session::PracticeStep{1});
-  list.add("practice-ready", session::ReadyStep{1, of, true});
-  add_planes(list, ask, "practice-", {.trial = 1, .practice = true});
+  list.add("practice-ready", session::ReadyStep{1, trial_count, true});
+  add_planes(list, trial_question, "practice-", {.trial = 1, .practice = true});
   list.add("practice-answer",
-           session::AnswerStep{
-               .trial = 1,
-               .of = of,
-               .practice = true,
-               .question = ask.question,
-               .picture = rated_picture(study, ask, static_cast<int>(study.classes.size())),
-               .sight = study.session.sight});
+           session::AnswerStep{.trial = 1,
+                               .total = trial_count,
+                               .practice = true,
+                               .question = trial_question.question,
+                               .picture = rated_picture(study, trial_question,
+                                                        static_cast<int>(study.classes.size())),
+                               .sight = study.session.sight});
   if (practice.trials.front().right) {
     list.add("practice-right", session::FeedbackStep{0, 0});
     list.add("practice-wrong", session::FeedbackStep{0, 1});
@@ -120,22 +122,23 @@ void add_practice(ScreenList& list, const study::Study& study, const study::Ask&
   list.add("practice-over", session::NoticeStep{session::NoticeStep::What::practice_over});
 }
 
-void add_trial(ScreenList& list, const study::Study& study, const study::Ask& ask, int of) {
-  const bool is_free = std::holds_alternative<study::Free>(ask.exploring);
-  list.add("ready", session::ReadyStep{1, of, false});
-  add_planes(list, ask, "", {.trial = 1});
+void add_trial(ScreenList& list, const study::Study& study,
+               const study::TrialQuestion& trial_question, int trial_count) {
+  const bool is_free = std::holds_alternative<study::FreeExploration>(trial_question.exploring);
+  list.add("ready", session::ReadyStep{1, trial_count, false});
+  add_planes(list, trial_question, "", {.trial = 1});
   session::AnswerStep answer{.trial = 1,
-                             .of = of,
-                             .may_explore_again = is_free && ask.planes == 1,
-                             .confidence_levels = ask.confidence_levels,
-                             .question = ask.question,
-                             .picture = rated_picture(study, ask, 0),
+                             .total = trial_count,
+                             .may_explore_again = is_free && trial_question.planes == 1,
+                             .confidence_levels = trial_question.confidence_levels,
+                             .question = trial_question.question,
+                             .picture = rated_picture(study, trial_question, 0),
                              .sight = study.session.sight};
   list.add("answer", answer);
   if (answer.confidence_levels > 0 && answer.sight != study::Sight::blindfold) {
     list.add("confidence", answer, keys_to_confidence());
   }
-  if (ask.feedback) {
+  if (trial_question.feedback) {
     list.add("right", session::FeedbackStep{0, 0});
     list.add("wrong", session::FeedbackStep{0, 1});
   }
@@ -150,20 +153,22 @@ void add_trial(ScreenList& list, const study::Study& study, const study::Ask& as
   }
 }
 
-/// A trial in which the device can only be heard, if the study has any.
-void add_hand_off(ScreenList& list, const study::Schedule& schedule, const study::Ask& ask) {
-  const auto is_heard = [](const study::Trial& trial) { return trial.place.hand_off; };
-  if (!std::ranges::any_of(schedule.trials, is_heard)) return;
-  const int of = static_cast<int>(schedule.trials.size());
+/// Adds a trial with the hand off the device, if the study has any.
+void add_hand_off(ScreenList& list, const study::Schedule& schedule,
+                  const study::TrialQuestion& trial_question) {
+  const auto is_hand_off = [](const study::Trial& trial) { return trial.place.hand_off; };
+  if (!std::ranges::any_of(schedule.trials, is_hand_off)) return;
+  const int trial_count = static_cast<int>(schedule.trials.size());
   list.add("hand-off", session::NoticeStep{session::NoticeStep::What::hand_off});
-  list.add("hand-off-ready", session::ReadyStep{of, of, false, true});
-  add_planes(list, ask, "hand-off-", {.trial = 1, .hand_off = true});
+  list.add("hand-off-ready", session::ReadyStep{trial_count, trial_count, false, true});
+  add_planes(list, trial_question, "hand-off-", {.trial = 1, .hand_off = true});
 }
 
-/// \param of  trials of a session
-void add_interruptions(ScreenList& list, const study::TrialOptions& plan, int of) {
+/// \param trial_count  number of trials of a session
+void add_interruptions(ScreenList& list, const study::TrialOptions& plan, int trial_count) {
   if (plan.break_every > 0 || plan.break_after_min > 0.0) {
-    list.add("break", session::BreakStep{plan.break_every > 0 ? plan.break_every : of / 2, of});
+    list.add("break", session::BreakStep{plan.break_every > 0 ? plan.break_every : trial_count / 2,
+                                         trial_count});
   }
   list.add("stopped",
            session::NoticeStep{.what = session::NoticeStep::What::stopped, .can_resume = false});
@@ -179,13 +184,13 @@ std::vector<PreviewScreen> preview_screens(const study::Study& study,
       "welcome", session::InstructionStep{texts.instructions},
       std::vector<std::vector<InputEvent>>(texts.instructions.size(), {pressed_key(Key::enter)}));
   list.add_questions("handedness", texts.handedness);
-  const study::Ask ask = study::ask_of(study);
+  const study::TrialQuestion trial_question = study::trial_question_of(study);
   const study::Schedule schedule = study::make_schedule(study, {});
-  const int of = static_cast<int>(schedule.trials.size());
-  add_practice(list, study, ask);
-  add_trial(list, study, ask, of);
-  add_hand_off(list, schedule, ask);
-  add_interruptions(list, study.trials, of);
+  const int trial_count = static_cast<int>(schedule.trials.size());
+  add_practice(list, study, trial_question);
+  add_trial(list, study, trial_question, trial_count);
+  add_hand_off(list, schedule, trial_question);
+  add_interruptions(list, study.trials, trial_count);
   list.add_questions("closing", texts.closing);
   list.add("thanks", session::EndStep{});
   return list.take();

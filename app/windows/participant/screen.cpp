@@ -24,41 +24,41 @@ int Screen::target_at(Vec2 position) const noexcept {
   return -1;
 }
 
-std::optional<session::StepReply> Screen::take(const InputEvent& event) {
-  if (done_) return std::nullopt;
+std::optional<session::StepReply> Screen::handle(const InputEvent& event) {
+  if (is_done_) return std::nullopt;
   std::optional<session::StepReply> reply;
   switch (event.kind) {
     case InputEvent::Kind::key:
     case InputEvent::Kind::repeat:
     case InputEvent::Kind::letter:
-      reply = take_key(event);
+      reply = handle_key(event);
       break;
     default:
-      reply = take_pointer(event);
+      reply = handle_pointer(event);
   }
   if (reply) {
-    done_ = true;
+    is_done_ = true;
     reply->at = reply->at.value_or(event.at);
   }
   return reply;
 }
 
-std::optional<session::StepReply> Screen::take_pointer(const InputEvent& event) {
-  const int under = target_at(event.position);
-  attention_.hover = under;
+std::optional<session::StepReply> Screen::handle_pointer(const InputEvent& event) {
+  const int target_id = target_at(event.position);
+  attention_.hover = target_id;
   if (event.kind == InputEvent::Kind::pressed) {
-    attention_.held = under;
+    attention_.held = target_id;
     attention_.focus = -1;
   }
   if (attention_.held >= 0) drag(attention_.held, event.position);
   if (event.kind != InputEvent::Kind::released) return std::nullopt;
-  const int held = std::exchange(attention_.held, -1);
-  if (held < 0 || held != under) return std::nullopt;
-  return activate(under, event.at);
+  const int held_id = std::exchange(attention_.held, -1);
+  if (held_id < 0 || held_id != target_id) return std::nullopt;
+  return activate(target_id, event.at);
 }
 
-std::optional<session::StepReply> Screen::take_key(const InputEvent& event) {
-  if (takes_key(event)) return std::nullopt;
+std::optional<session::StepReply> Screen::handle_key(const InputEvent& event) {
+  if (handle_special_key(event)) return std::nullopt;
   // A key that is held down acts once.
   if (event.kind != InputEvent::Kind::key) return std::nullopt;
   switch (event.key) {
@@ -87,18 +87,17 @@ Vec2 centre(const Box& box) {
   return {box.x + box.width / 2.0, box.y + box.height / 2.0};
 }
 
-/// The distance between two boxes in a direction; infinite if the other one is not in that
-/// direction.
-double way(const Box& from, const Box& to, Key direction) {
-  const Vec2 step = centre(to) - centre(from);
-  const bool across = direction == Key::left || direction == Key::right;
+/// The distance between two boxes in a direction; infinite if `other` is not in that direction.
+double distance_towards(const Box& start, const Box& other, Key direction) {
+  const Vec2 step = centre(other) - centre(start);
+  const bool is_horizontal = direction == Key::left || direction == Key::right;
   const double sign = direction == Key::left || direction == Key::up ? -1.0 : 1.0;
-  const double along = sign * (across ? step.x : step.y);
-  const double aside = std::abs(across ? step.y : step.x);
-  if (along <= 1.0 || (across && aside > from.height)) {
+  const double forwards = sign * (is_horizontal ? step.x : step.y);
+  const double sideways = std::abs(is_horizontal ? step.y : step.x);
+  if (forwards <= 1.0 || (is_horizontal && sideways > start.height)) {
     return std::numeric_limits<double>::infinity();
   }
-  return along + 2.0 * aside;
+  return forwards + 2.0 * sideways;
 }
 
 }  // namespace
@@ -121,7 +120,7 @@ void Screen::move_focus(Key key) {
   }
   double shortest = std::numeric_limits<double>::infinity();
   for (const Target& target : targets_) {
-    const double distance = way(current->box, target.box, key);
+    const double distance = distance_towards(current->box, target.box, key);
     if (distance < shortest) attention_.focus = target.id;
     shortest = std::min(shortest, distance);
   }

@@ -1,5 +1,5 @@
-/// \file One screen of the participant's window: drawing, and handling of keys and clicks. It does
-///   not depend on window or threads; one thread at a time uses it.
+/// \file One screen of the participant's window: drawing, and handling of keys and clicks. It needs
+///   no window; one thread at a time uses it.
 #pragma once
 
 #include "app/windows/participant/canvas.hpp"
@@ -18,7 +18,7 @@
 namespace touchtrial::app {
 
 /// The physical scale of the screen.
-struct Glass {
+struct PhysicalScale {
   double mm_per_unit = kMmPerInch / 96.0;
   bool is_known = false;  ///< false: the scale is a guess
 };
@@ -30,16 +30,16 @@ struct ScreenContext {
   study::Sight sight = study::Sight::curtain;
   bool mouse = false;  ///< the device is a mouse
   PictureShelf* shelf = nullptr;
-  const Glass* glass = nullptr;
-  study::Ask ask{};  ///< of the study's trials
+  const PhysicalScale* physical_scale = nullptr;
+  study::TrialQuestion trial_question{};  ///< question of the study's trials
 
-  /// Whether planes have a clock (study::InContact).
+  /// Whether planes have a clock (study::TimedContact).
   [[nodiscard]] bool has_clock() const noexcept {
-    return std::holds_alternative<study::InContact>(ask.exploring);
+    return std::holds_alternative<study::TimedContact>(trial_question.exploring);
   }
   /// Whether trials ask for ratings.
-  [[nodiscard]] bool rates() const noexcept {
-    return std::holds_alternative<study::Rate>(ask.question);
+  [[nodiscard]] bool has_ratings() const noexcept {
+    return std::holds_alternative<study::RatingQuestion>(trial_question.question);
   }
 };
 
@@ -55,10 +55,10 @@ class Screen {
   [[nodiscard]] const Attention& attention() const noexcept { return attention_; }
   /// Handles an event. Events after the reply are ignored.
   /// \return the reply, once
-  [[nodiscard]] std::optional<session::StepReply> take(const InputEvent& event);
+  [[nodiscard]] std::optional<session::StepReply> handle(const InputEvent& event);
   /// Whether the screen changes without events.
-  [[nodiscard]] virtual bool is_alive() const noexcept { return false; }
-  [[nodiscard]] bool is_done() const noexcept { return done_; }
+  [[nodiscard]] virtual bool is_animated() const noexcept { return false; }
+  [[nodiscard]] bool is_done() const noexcept { return is_done_; }
 
  protected:
   virtual void paint(Canvas& canvas) = 0;
@@ -66,28 +66,28 @@ class Screen {
   [[nodiscard]] virtual std::optional<session::StepReply> activate(int id, Time at) = 0;
   /// \return the target that Enter activates if no target has the focus; -1: none
   [[nodiscard]] virtual int default_target() const noexcept { return -1; }
-  /// Called while the mouse button holds a target: when it is pressed, moved and released.
+  /// Called when the mouse presses a target, moves while holding it, and releases it.
   virtual void drag(int /*id*/, Vec2 /*to*/) {}
   /// Handles keys that have a special meaning on this screen.
   /// \return whether the event was such a key
-  virtual bool takes_key(const InputEvent& /*event*/) { return false; }
+  virtual bool handle_special_key(const InputEvent& /*event*/) { return false; }
 
   void focus(int id) noexcept { attention_.focus = id; }
   [[nodiscard]] bool has_target(int id) const noexcept;
 
  private:
-  [[nodiscard]] std::optional<session::StepReply> take_key(const InputEvent& event);
-  [[nodiscard]] std::optional<session::StepReply> take_pointer(const InputEvent& event);
+  [[nodiscard]] std::optional<session::StepReply> handle_key(const InputEvent& event);
+  [[nodiscard]] std::optional<session::StepReply> handle_pointer(const InputEvent& event);
   [[nodiscard]] int target_at(Vec2 position) const noexcept;
   void move_focus(Key key);
 
   Attention attention_;
   std::vector<Target> targets_;
-  bool done_ = false;
+  bool is_done_ = false;
 };
 
 /// Makes the screen of a step.
-/// \param labels  of the pictures, by position
+/// \param labels  labels of the pictures, by position
 [[nodiscard]] std::shared_ptr<Screen> screen_for(const session::Step& step,
                                                  const ScreenContext& context,
                                                  const std::vector<std::string>& labels);

@@ -24,92 +24,95 @@ void WindowExchange::show(std::shared_ptr<Screen> screen) {
   const std::lock_guard lock(mutex_);
   screen_ = std::move(screen);
   reply_.reset();
-  replied_by_.reset();
-  // A screen that is shown again must be drawn again before it counts as shown.
-  shown_.reset();
-  dirty_ = true;
-  for_drawing_.notify_all();
+  reply_screen_.reset();
+  // A screen must be drawn again before it counts as shown again.
+  shown_screen_.reset();
+  is_dirty_ = true;
+  drawing_condition_.notify_all();
 }
 
-std::optional<session::StepReply> WindowExchange::reply(const Screen& of,
+std::optional<session::StepReply> WindowExchange::reply(const Screen& screen,
                                                         std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
-  for_others_.wait_for(lock, timeout, [&] { return replied_by_.get() == &of || failure_; });
-  if (replied_by_.get() != &of) return std::nullopt;
-  replied_by_.reset();
+  result_condition_.wait_for(lock, timeout,
+                             [&] { return reply_screen_.get() == &screen || failure_; });
+  if (reply_screen_.get() != &screen) return std::nullopt;
+  reply_screen_.reset();
   return std::exchange(reply_, std::nullopt);
 }
 
 void WindowExchange::push(const InputEvent& event) {
   const std::lock_guard lock(mutex_);
   events_.push_back(event);
-  settled_ = false;
-  for_drawing_.notify_all();
+  has_shown_events_ = false;
+  drawing_condition_.notify_all();
 }
 
 void WindowExchange::set_surface(const WindowSurface& surface) {
   const std::lock_guard lock(mutex_);
   surface_ = surface;
-  dirty_ = true;
-  for_drawing_.notify_all();
+  is_dirty_ = true;
+  drawing_condition_.notify_all();
 }
 
 void WindowExchange::redraw() {
   const std::lock_guard lock(mutex_);
-  dirty_ = true;
-  for_drawing_.notify_all();
+  is_dirty_ = true;
+  drawing_condition_.notify_all();
 }
 
 void WindowExchange::end() {
   const std::lock_guard lock(mutex_);
-  ending_ = true;
-  for_drawing_.notify_all();
-  for_others_.notify_all();
+  is_ending_ = true;
+  drawing_condition_.notify_all();
+  result_condition_.notify_all();
 }
 
 WindowExchange::Work WindowExchange::wait_for_work(std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
-  const auto is_new = [this] { return dirty_ || ending_ || picture_wanted_ || !events_.empty(); };
-  for_drawing_.wait_for(lock, timeout, [&] { return is_woken_ || is_new(); });
-  const bool came = is_new();
+  const auto is_new = [this] {
+    return is_dirty_ || is_ending_ || picture_requested_ || !events_.empty();
+  };
+  drawing_condition_.wait_for(lock, timeout, [&] { return is_woken_ || is_new(); });
+  const bool has_work = is_new();
   is_woken_ = false;
-  dirty_ = false;
-  return {screen_, surface_, std::exchange(events_, {}), picture_wanted_, ending_, came};
+  is_dirty_ = false;
+  return {screen_, surface_, std::exchange(events_, {}), picture_requested_, is_ending_, has_work};
 }
 
 void WindowExchange::wake() {
   const std::lock_guard lock(mutex_);
   is_woken_ = true;
-  for_drawing_.notify_all();
+  drawing_condition_.notify_all();
 }
 
-void WindowExchange::shown(const std::shared_ptr<Screen>& screen, bool events_left) {
+void WindowExchange::mark_shown(const std::shared_ptr<Screen>& screen, bool events_left) {
   const std::lock_guard lock(mutex_);
-  shown_ = screen;
-  settled_ = !events_left && events_.empty();
-  for_others_.notify_all();
+  shown_screen_ = screen;
+  has_shown_events_ = !events_left && events_.empty();
+  result_condition_.notify_all();
 }
 
-void WindowExchange::replied(const std::shared_ptr<Screen>& screen,
-                             const session::StepReply& reply) {
+void WindowExchange::set_reply(const std::shared_ptr<Screen>& screen,
+                               const session::StepReply& reply) {
   const std::lock_guard lock(mutex_);
   if (screen != screen_) return;  // the session has moved on
-  replied_by_ = screen;
+  reply_screen_ = screen;
   reply_ = reply;
-  for_others_.notify_all();
+  result_condition_.notify_all();
 }
 
-void WindowExchange::keep(engine::ColourImage picture) {
+void WindowExchange::set_picture(engine::ColourImage picture) {
   const std::lock_guard lock(mutex_);
   picture_ = std::move(picture);
-  picture_wanted_ = false;
-  for_others_.notify_all();
+  picture_requested_ = false;
+  result_condition_.notify_all();
 }
 
-void WindowExchange::failed(std::exception_ptr failure) {
+void WindowExchange::set_failure(std::exception_ptr failure) {
   const std::lock_guard lock(mutex_);
   failure_ = std::move(failure);
-  for_others_.notify_all();
+  result_condition_.notify_all();
 }
 
 WindowSurface WindowExchange::surface() const {
@@ -119,16 +122,17 @@ WindowSurface WindowExchange::surface() const {
 
 bool WindowExchange::wait_until_shown(std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
-  return for_others_.wait_for(lock, timeout,
-                              [this] { return shown_ == screen_ && settled_ && events_.empty(); });
+  return result_condition_.wait_for(lock, timeout, [this] {
+    return shown_screen_ == screen_ && has_shown_events_ && events_.empty();
+  });
 }
 
 std::optional<engine::ColourImage> WindowExchange::picture(std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
   picture_.reset();
-  picture_wanted_ = true;
-  for_drawing_.notify_all();
-  for_others_.wait_for(lock, timeout, [this] { return picture_.has_value() || failure_; });
+  picture_requested_ = true;
+  drawing_condition_.notify_all();
+  result_condition_.wait_for(lock, timeout, [this] { return picture_.has_value() || failure_; });
   return std::exchange(picture_, std::nullopt);
 }
 
@@ -166,23 +170,23 @@ void GlPictureShelf::clear() {
 
 Vec2 GlPictureShelf::size_mm(const std::string& label) const {
   constexpr double kBlankMm = 40.0;
-  const auto found = pictures_.find(label);
-  if (found == pictures_.end() || found->second.empty()) return {kBlankMm, kBlankMm};
-  return {pitch_mm_ * found->second.width(), pitch_mm_ * found->second.height()};
+  const auto entry = pictures_.find(label);
+  if (entry == pictures_.end() || entry->second.empty()) return {kBlankMm, kBlankMm};
+  return {pitch_mm_ * entry->second.width(), pitch_mm_ * entry->second.height()};
 }
 
 void* GlPictureShelf::texture(const std::string& label, int width, int height) {
-  const auto found = pictures_.find(label);
-  if (found == pictures_.end() || found->second.empty()) return nullptr;
-  const int across = std::max(1, static_cast<int>(std::lround(width * density_)));
-  const int down = std::max(1, static_cast<int>(std::lround(height * density_)));
+  const auto entry = pictures_.find(label);
+  if (entry == pictures_.end() || entry->second.empty()) return nullptr;
+  const int columns = std::max(1, static_cast<int>(std::lround(width * density_)));
+  const int rows = std::max(1, static_cast<int>(std::lround(height * density_)));
   Texture& texture = textures_[label];
   if (texture.name == 0) glGenTextures(1, &texture.name);
-  if (texture.width != across || texture.height != down) {
+  if (texture.width != columns || texture.height != rows) {
     glBindTexture(GL_TEXTURE_2D, texture.name);
-    upload(engine::resized(found->second, down, across));
-    texture.width = across;
-    texture.height = down;
+    upload(engine::resized(entry->second, rows, columns));
+    texture.width = columns;
+    texture.height = rows;
   }
   // ImGui's renderer takes texture names as pointers.
   return reinterpret_cast<void*>(static_cast<std::intptr_t>(texture.name));
@@ -193,9 +197,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-/// The time between frames without changes, because some systems lose the content of hidden
-/// windows.
-constexpr milliseconds kIdle{500};
+/// The time between frames without changes. They are drawn because some systems lose the content of
+/// hidden windows.
+constexpr milliseconds kIdleInterval{500};
 
 bool is_transition(const InputEvent& event) {
   return event.kind != InputEvent::Kind::moved && event.kind != InputEvent::Kind::letter;
@@ -204,11 +208,11 @@ bool is_transition(const InputEvent& event) {
 /// OpenGL and ImGui for one window, while its thread draws.
 class Drawing {
  public:
-  Drawing(GLFWwindow* window, WindowExchange& exchange, Glass& glass, GlPictureShelf& shelf,
-          const ScreenLook& look, ConsoleWindow* console)
+  Drawing(GLFWwindow* window, WindowExchange& exchange, PhysicalScale& physical_scale,
+          GlPictureShelf& shelf, const ScreenLook& look, ConsoleWindow* console)
       : window_(window),
         exchange_(exchange),
-        glass_(glass),
+        physical_scale_(physical_scale),
         shelf_(shelf),
         look_(look),
         letters_(look.letters),
@@ -236,74 +240,75 @@ class Drawing {
     for (;;) {
       WindowExchange::Work work = exchange_.wait_for_work(timeout());
       if (work.ending) return;
-      waiting_.insert(waiting_.end(), work.events.begin(), work.events.end());
-      glass_ = work.surface.glass;
-      if (work.screen != screen_) begin(work.screen);
-      take_events();
-      if (is_due(work)) frame(work);
+      pending_events_.insert(pending_events_.end(), work.events.begin(), work.events.end());
+      physical_scale_ = work.surface.physical_scale;
+      if (work.screen != screen_) set_screen(work.screen);
+      pass_events();
+      if (is_due(work)) draw_frame(work);
       draw_console();
     }
   }
 
  private:
   [[nodiscard]] milliseconds timeout() const {
-    if (!waiting_.empty()) return milliseconds(0);
-    if (console_ != nullptr && console_->wants_picture()) return milliseconds(0);
-    return screen_ && screen_->is_alive() ? milliseconds(0) : kIdle;
+    if (!pending_events_.empty()) return milliseconds(0);
+    if (console_ != nullptr && console_->needs_frame()) return milliseconds(0);
+    return screen_ && screen_->is_animated() ? milliseconds(0) : kIdleInterval;
   }
 
   /// Whether the window needs a new frame, apart from the console.
   [[nodiscard]] bool is_due(const WindowExchange::Work& work) const {
     if (work.surface.width_px <= 0 || work.surface.height_px <= 0) return false;
-    return work.is_new || has_input_ || !waiting_.empty() || !is_shown_ ||
-           (screen_ && screen_->is_alive()) || Clock::now() - drawn_at_ >= kIdle;
+    return work.is_new || has_input_ || !pending_events_.empty() || !is_shown_ ||
+           (screen_ && screen_->is_animated()) || Clock::now() - drawn_at_ >= kIdleInterval;
   }
 
   void draw_console() {
-    if (console_ == nullptr || !console_->wants_picture()) return;
+    if (console_ == nullptr || !console_->needs_frame()) return;
     console_->draw();
     glfwMakeContextCurrent(window_);
   }
 
-  void begin(std::shared_ptr<Screen> screen) {
+  void set_screen(std::shared_ptr<Screen> screen) {
     screen_ = std::move(screen);
     is_shown_ = false;
   }
 
   /// Passes events to the screen, up to the first key or button. An event from before the screen
   /// was visible is dropped.
-  void take_events() {
-    while (!waiting_.empty()) {
-      const InputEvent event = waiting_.front();
-      // An event can be ordered relative to the screen only once the screen is shown. Letters may
+  void pass_events() {
+    while (!pending_events_.empty()) {
+      const InputEvent event = pending_events_.front();
+      // Whether an event came before the screen is known only once the screen is shown. Letters may
       // have enabled a button.
       if ((!is_shown_ || has_letters_) && screen_ && is_transition(event)) return;
-      waiting_.pop_front();
+      pending_events_.pop_front();
       if (!screen_) continue;
       if (event.kind != InputEvent::Kind::moved && event.at < shown_at_) continue;
       has_input_ = true;
-      if (const auto reply = screen_->take(event)) exchange_.replied(screen_, *reply);
+      if (const auto reply = screen_->handle(event)) exchange_.set_reply(screen_, *reply);
       if (is_transition(event)) return;
       has_letters_ = has_letters_ || event.kind == InputEvent::Kind::letter;
     }
   }
 
-  void frame(const WindowExchange::Work& work) {
-    const Clock::time_point began = Clock::now();
+  void draw_frame(const WindowExchange::Work& work) {
+    const Clock::time_point start = Clock::now();
     draw(work.surface);
-    if (work.picture_wanted) {
-      exchange_.keep(drawn_picture(work.surface.width_px, work.surface.height_px));
+    if (work.picture_requested) {
+      exchange_.set_picture(capture_frame(work.surface.width_px, work.surface.height_px));
     }
     glfwSwapBuffers(window_);
     drawn_at_ = Clock::now();
     if (!is_shown_) shown_at_ = drawn_at_;
     is_shown_ = true;
     has_letters_ = has_input_ = false;
-    exchange_.shown(screen_, !waiting_.empty());
-    // In case the system does not limit the frame rate.
-    if (screen_ && screen_->is_alive()) {
-      const std::chrono::duration<double> each(0.9 / std::max(work.surface.refresh_hz, 30.0));
-      std::this_thread::sleep_until(began + std::chrono::duration_cast<Clock::duration>(each));
+    exchange_.mark_shown(screen_, !pending_events_.empty());
+    // Limits the frame rate if the system does not.
+    if (screen_ && screen_->is_animated()) {
+      const std::chrono::duration<double> frame_time(0.9 / std::max(work.surface.refresh_hz, 30.0));
+      std::this_thread::sleep_until(start +
+                                    std::chrono::duration_cast<Clock::duration>(frame_time));
     }
   }
 
@@ -353,17 +358,18 @@ class Drawing {
                   screen_ ? screen_->attention() : Attention{}, look_.high_contrast);
     if (screen_) screen_->draw(canvas);
     ImGui::End();
-    const std::size_t before = letters_.size();
-    letters_.insert(canvas.missing().begin(), canvas.missing().end());
-    has_all_letters_ = letters_.size() == before;
+    const std::size_t old_count = letters_.size();
+    letters_.insert(canvas.missing_letters().begin(), canvas.missing_letters().end());
+    has_all_letters_ = letters_.size() == old_count;
   }
 
   GLFWwindow* window_;
   WindowExchange& exchange_;
-  Glass& glass_;
+  PhysicalScale& physical_scale_;
   GlPictureShelf& shelf_;
   const ScreenLook& look_;
-  std::set<char32_t> letters_;  ///< of the fonts, including those that no typeface has
+  std::set<char32_t>
+      letters_;  ///< letters requested from the fonts, including those that no typeface has
   bool has_all_letters_ = true;
   ConsoleWindow* console_;
   ImGuiContext* context_ = nullptr;
@@ -372,20 +378,20 @@ class Drawing {
   std::shared_ptr<Screen> screen_;
   bool is_shown_ = false;
   bool has_input_ = false;    ///< events since the last frame
-  bool has_letters_ = false;  ///< among them
+  bool has_letters_ = false;  ///< whether these events contain letters
   Clock::time_point shown_at_{};
   Clock::time_point drawn_at_{};
-  std::deque<InputEvent> waiting_;
+  std::deque<InputEvent> pending_events_;
 };
 
 }  // namespace
 
-void draw_until_ended(GLFWwindow* window, WindowExchange& exchange, Glass& glass,
+void draw_until_ended(GLFWwindow* window, WindowExchange& exchange, PhysicalScale& physical_scale,
                       GlPictureShelf& shelf, const ScreenLook& look, ConsoleWindow* console) {
   try {
-    Drawing(window, exchange, glass, shelf, look, console).run();
+    Drawing(window, exchange, physical_scale, shelf, look, console).run();
   } catch (...) {
-    exchange.failed(std::current_exception());
+    exchange.set_failure(std::current_exception());
   }
 }
 

@@ -26,19 +26,20 @@ namespace touchtrial::app {
 struct ScreenLook {
   double text_scale = 1.0;
   bool high_contrast = false;
-  std::set<char32_t> letters;  ///< in the fonts from the first frame on
+  std::set<char32_t> letters;  ///< letters in the fonts from the first frame
 };
 
 /// The window's state, set by the main thread.
 struct WindowSurface {
   Vec2 size;         ///< window units
-  int width_px = 0;  ///< of the picture
+  int width_px = 0;  ///< width of the picture
   int height_px = 0;
-  Glass glass;
+  PhysicalScale physical_scale;
   double refresh_hz = 60.0;
 };
 
-/// All functions are thread-safe. Only those documented so wait.
+/// The exchange between the threads. All functions are thread-safe and do not block, except those
+/// described as waiting.
 class WindowExchange {
  public:
   /// The next work of the drawing thread.
@@ -46,7 +47,7 @@ class WindowExchange {
     std::shared_ptr<Screen> screen;
     WindowSurface surface;
     std::vector<InputEvent> events;
-    bool picture_wanted = false;
+    bool picture_requested = false;
     bool ending = false;
     bool is_new = true;  ///< there was input since the last call
   };
@@ -55,8 +56,8 @@ class WindowExchange {
   ///@{
   void show(std::shared_ptr<Screen> screen);
   /// Waits for the screen's reply.
-  /// \return the reply, once; nothing if none comes in time
-  [[nodiscard]] std::optional<session::StepReply> reply(const Screen& of,
+  /// \return the reply, once; nothing after the timeout
+  [[nodiscard]] std::optional<session::StepReply> reply(const Screen& screen,
                                                         std::chrono::milliseconds timeout);
   ///@}
 
@@ -70,44 +71,44 @@ class WindowExchange {
 
   /// \name Drawing thread
   ///@{
-  /// Waits until there is something new, or until `timeout` has passed.
+  /// Waits for new work, or until `timeout` has passed.
   [[nodiscard]] Work wait_for_work(std::chrono::milliseconds timeout);
-  /// \param events_left  whether the screen has yet to take events
-  void shown(const std::shared_ptr<Screen>& screen, bool events_left);
-  void replied(const std::shared_ptr<Screen>& screen, const session::StepReply& reply);
-  void keep(engine::ColourImage picture);
-  void failed(std::exception_ptr failure);
+  /// \param events_left  whether events for the screen are still pending
+  void mark_shown(const std::shared_ptr<Screen>& screen, bool events_left);
+  void set_reply(const std::shared_ptr<Screen>& screen, const session::StepReply& reply);
+  void set_picture(engine::ColourImage picture);
+  void set_failure(std::exception_ptr failure);
   ///@}
 
-  /// Wakes the drawing thread for something else that it draws.
+  /// Wakes the drawing thread, for instance for the console.
   void wake();
   [[nodiscard]] WindowSurface surface() const;
-  /// Waits until the newest screen is visible and has taken all events.
-  /// \return false if that does not happen in time
+  /// Waits until the newest screen is visible and has handled all events.
+  /// \return false after the timeout
   [[nodiscard]] bool wait_until_shown(std::chrono::milliseconds timeout);
   /// Waits for the next picture.
-  /// \return nothing if none comes in time
+  /// \return nothing after the timeout
   [[nodiscard]] std::optional<engine::ColourImage> picture(std::chrono::milliseconds timeout);
-  /// \throws what drawing threw
+  /// \throws the drawing thread's exception
   void check() const;
 
  private:
   mutable std::mutex mutex_;
-  std::condition_variable for_drawing_;
-  std::condition_variable for_others_;
+  std::condition_variable drawing_condition_;
+  std::condition_variable result_condition_;
   std::shared_ptr<Screen> screen_;
-  std::shared_ptr<Screen> shown_;
-  std::shared_ptr<Screen> replied_by_;
+  std::shared_ptr<Screen> shown_screen_;
+  std::shared_ptr<Screen> reply_screen_;
   std::optional<session::StepReply> reply_;
   WindowSurface surface_;
   std::vector<InputEvent> events_;
   std::optional<engine::ColourImage> picture_;
   std::exception_ptr failure_;
-  bool picture_wanted_ = false;
-  bool dirty_ = true;
+  bool picture_requested_ = false;
+  bool is_dirty_ = true;
   bool is_woken_ = false;
-  bool settled_ = false;  ///< the last picture shows the effect of all events
-  bool ending_ = false;
+  bool has_shown_events_ = false;  ///< the last picture shows the effect of all events
+  bool is_ending_ = false;
 };
 
 class ConsoleWindow;
@@ -116,8 +117,8 @@ class ConsoleWindow;
 /// Belongs to the drawing thread, whose OpenGL context must be current.
 class GlPictureShelf final : public PictureShelf {
  public:
-  /// \param pictures  by label; must outlive this object
-  /// \param pitch_mm  of a pixel, > 0
+  /// \param pictures  pictures by label; must outlive this object
+  /// \param pitch_mm  size of a pixel, > 0
   GlPictureShelf(const std::map<std::string, GreyImage>& pictures, double pitch_mm)
       : pictures_(pictures), pitch_mm_(pitch_mm) {}
 
@@ -144,14 +145,14 @@ class GlPictureShelf final : public PictureShelf {
 };
 
 /// Draws what the exchange shows until it ends, with the window's OpenGL context, which it releases
-/// afterwards. Draws nothing while nothing changes, so that the servo has the processor. The screen
-/// takes one key or button per picture, so that its effect is seen before the next. Failures go to
-/// the exchange.
-/// \param glass  the scale that the screens read; only this function writes it
-/// \param shelf  of the same OpenGL context; its textures are deleted at the end
+/// afterwards. Draws nothing while nothing changes, which leaves the processor to the servo. The
+/// screen handles one key or button per picture, so that its effect is seen before the next.
+/// Failures go to the exchange.
+/// \param physical_scale  the scale that the screens read; only this function writes it
+/// \param shelf  a shelf of the same OpenGL context; its textures are deleted at the end
 /// \param look  must outlive the call
-/// \param console  drawn between this window's pictures when it asks for it; null: no console
-void draw_until_ended(GLFWwindow* window, WindowExchange& exchange, Glass& glass,
+/// \param console  drawn between this window's frames when it needs one; null: no console
+void draw_until_ended(GLFWwindow* window, WindowExchange& exchange, PhysicalScale& physical_scale,
                       GlPictureShelf& shelf, const ScreenLook& look, ConsoleWindow* console);
 
 }  // namespace touchtrial::app

@@ -32,22 +32,23 @@ std::string choice_text(const Words& words, const std::string& label) {
   return text != words.by_key.end() ? text->second : label;
 }
 
-std::string filled(std::string text,
-                   const std::vector<std::pair<std::string, std::string>>& values) {
+std::string fill_placeholders(std::string text,
+                              const std::vector<std::pair<std::string, std::string>>& values) {
   for (const auto& [name, value] : values) {
-    const std::string place = "{" + name + "}";
-    for (auto at = text.find(place); at != text.npos; at = text.find(place, at + value.size())) {
-      text.replace(at, place.size(), value);
+    const std::string placeholder = "{" + name + "}";
+    for (auto start = text.find(placeholder); start != text.npos;
+         start = text.find(placeholder, start + value.size())) {
+      text.replace(start, placeholder.size(), value);
     }
   }
   return text;
 }
 
-std::string with_numbers(const std::string& text,
+std::string fill_numbers(const std::string& text,
                          const std::vector<std::pair<std::string, int>>& numbers) {
   std::vector<std::pair<std::string, std::string>> values;
   for (const auto& [name, number] : numbers) values.emplace_back(name, std::to_string(number));
-  return filled(text, values);
+  return fill_placeholders(text, values);
 }
 
 }  // namespace touchtrial::app

@@ -10,7 +10,7 @@
 
 namespace touchtrial::app {
 
-/// The names of all texts, which are their keys in a language's file too.
+/// The names of all texts, which are also their keys in the file of a language.
 // clang-format off
 #define TOUCHTRIAL_SCREEN_TEXTS(TEXT) \
   TEXT(trial_of)  /* progress */ \
@@ -20,7 +20,7 @@ namespace touchtrial::app {
   TEXT(next) \
   TEXT(back) \
   TEXT(skip)  /* an optional question */ \
-  TEXT(go_on) \
+  TEXT(go_on)  /* the button "Continue" */ \
   TEXT(practice_title) \
   TEXT(practice_again_title)  /* second round */ \
   TEXT(practice_text) \
@@ -31,7 +31,7 @@ namespace touchtrial::app {
   TEXT(practice_start) \
   TEXT(practice_over_title) \
   TEXT(practice_over_text) \
-  TEXT(practice_over_text_feedback)  /* where answers are told in trials too */ \
+  TEXT(practice_over_text_feedback)  /* where trials have feedback too */ \
   TEXT(practice_over_text_rating) \
   TEXT(ready_title) \
   TEXT(ready_text) \
@@ -40,7 +40,7 @@ namespace touchtrial::app {
   TEXT(ready_text_intervals_mouse) \
   TEXT(ready_text_hand_off) \
   TEXT(ready_keys) \
-  TEXT(interval_of)  /* which plane of a trial comes next, or is on */ \
+  TEXT(interval_of)  /* the number of the next or current plane of a trial */ \
   TEXT(interval_text)  /* before it */ \
   TEXT(interval_text_mouse) \
   TEXT(interval_text_hand_off) \
@@ -67,7 +67,7 @@ namespace touchtrial::app {
   TEXT(changes_once)  /* after the choice, which may be changed once */ \
   TEXT(now_fixed)  /* after the change */ \
   TEXT(feel_again) \
-  TEXT(scale_bar)  /* what the bar of 10 mm shows */ \
+  TEXT(scale_bar)  /* the legend of the bar of 10 mm */ \
   TEXT(scale_true) \
   TEXT(scale_shrunk) \
   TEXT(scale_unknown)  /* the size of the monitor is not known */ \
@@ -90,7 +90,7 @@ namespace touchtrial::app {
   TEXT(stopped_text_alone)  /* where the participant decides, with a mouse */ \
   TEXT(not_explored_title)  /* a trial is repeated */ \
   TEXT(not_explored_text) \
-  TEXT(hand_off_title)  /* from here on the device is only heard */ \
+  TEXT(hand_off_title)  /* the hand leaves the device, which is only heard in the last trials */ \
   TEXT(hand_off_text) \
   TEXT(end_title) \
   TEXT(end_text) \
@@ -100,32 +100,34 @@ namespace touchtrial::app {
 // clang-format on
 
 /// All texts of the window in one language: the section "screens" of its file, whose keys are the
-/// names of the members. Words in braces ("{trial}") stand for numbers and labels.
+/// names of the members. Placeholders in braces ("{trial}") stand for numbers and labels.
 struct Words {
 #define TOUCHTRIAL_MEMBER(name) std::string name;
   TOUCHTRIAL_SCREEN_TEXTS(TOUCHTRIAL_MEMBER)
 #undef TOUCHTRIAL_MEMBER
-  std::map<std::string, std::string> by_key;  ///< all of the section, for keys that protocols name
+  std::map<std::string, std::string> by_key;  ///< the whole section, for keys that protocols name
 };
 
-/// \param texts  a language's, as study::texts_of gives them
+/// \param texts  texts of one language, from study::texts_of
 /// \throws std::out_of_range if one is missing
 [[nodiscard]] Words words_of(const study::Texts& texts);
 
 /// The title of an answer.
-/// \param key  in "screens"; empty: which picture it is. Must outlive the title
+/// \param key  a key in "screens"; empty: the question which picture was felt. It must outlive the
+///   result.
 /// \return the key itself if there is no such text
 [[nodiscard]] const std::string& title_of(const Words& words, const std::string& key);
 
-/// A choice that is a word, in the words' language.
+/// The text of a choice that is a word, in the language of `words`.
 /// \return the label itself if there is no text for it
 [[nodiscard]] std::string choice_text(const Words& words, const std::string& label);
 
-/// \param values  the replacements of "{name}", by name
-[[nodiscard]] std::string filled(std::string text,
-                                 const std::vector<std::pair<std::string, std::string>>& values);
-/// The same with numbers.
-[[nodiscard]] std::string with_numbers(const std::string& text,
+/// Replaces "{name}" in a text.
+/// \param values  the replacements by name
+[[nodiscard]] std::string fill_placeholders(
+    std::string text, const std::vector<std::pair<std::string, std::string>>& values);
+/// Replaces "{name}" by numbers.
+[[nodiscard]] std::string fill_numbers(const std::string& text,
                                        const std::vector<std::pair<std::string, int>>& numbers);
 
 }  // namespace touchtrial::app

@@ -1,4 +1,4 @@
-// The record of a bring-up and its file; signs of axes, and detection of simulated hardware.
+/// \file The record of a bring-up, its file, the signs of axes, and detection of simulated hardware.
 #include "device/acceptance/bring_up/findings.hpp"
 
 #include "core/hash.hpp"
@@ -33,15 +33,15 @@ constexpr double kMaxBackwardMm = 2.0;
 constexpr std::array<std::string_view, 8> kStandInWords = {"simul", "emul",  "virtual",  "fake",
                                                            "mock",  "dummy", "stand-in", "standin"};
 
-/// \return zeros if it is not a vector
+/// \return the finding's three numbers as a vector; zeros if it does not have three
 Vec3 vec_of(const Finding* finding) {
   if (finding == nullptr || finding->numbers.size() != 3) return {};
   return {finding->numbers[0], finding->numbers[1], finding->numbers[2]};
 }
 
-Finding& noted(std::vector<Finding>& findings, const std::string& name) {
-  const auto same = std::ranges::find(findings, name, &Finding::name);
-  return same == findings.end() ? findings.emplace_back(Finding{name}) : *same;
+Finding& find_or_add(std::vector<Finding>& findings, const std::string& name) {
+  const auto found = std::ranges::find(findings, name, &Finding::name);
+  return found == findings.end() ? findings.emplace_back(Finding{name}) : *found;
 }
 
 bool is_stand_in_name(std::string text) {
@@ -52,7 +52,7 @@ bool is_stand_in_name(std::string text) {
       kStandInWords, [&](std::string_view word) { return text.find(word) != std::string::npos; });
 }
 
-/// \return the library file of a driver in the settings; empty: none
+/// \return the driver's library in the settings; empty: none
 std::filesystem::path library_of(const std::string& driver, const DeviceSettings& settings) {
   if (driver == "dhd") return settings.dhd.library;
   if (driver == "openhaptics") return settings.openhaptics.library;
@@ -60,38 +60,38 @@ std::filesystem::path library_of(const std::string& driver, const DeviceSettings
 }
 
 struct LoadedLibrary {
-  std::filesystem::path named;  ///< by the settings
-  std::filesystem::path file;   ///< canonical path of the library loaded by that name
-  bool has_symbol = false;      ///< it has the symbol of a stand-in
+  std::filesystem::path configured_name;  ///< name in the settings
+  std::filesystem::path file;             ///< canonical path of the library loaded by that name
+  bool has_symbol = false;                ///< whether it has the symbol of a stand-in
 };
 
-LoadedLibrary loaded_library(const std::filesystem::path& named) {
-  LoadedLibrary library{named, named};
-  if (named.empty()) return library;
-  std::error_code none;
-  if (void* const handle = dlopen(named.c_str(), RTLD_LAZY | RTLD_NOLOAD)) {
+LoadedLibrary loaded_library(const std::filesystem::path& configured_name) {
+  LoadedLibrary library{configured_name, configured_name};
+  if (configured_name.empty()) return library;
+  std::error_code ignored;
+  if (void* const handle = dlopen(configured_name.c_str(), RTLD_LAZY | RTLD_NOLOAD)) {
     link_map* map = nullptr;
     if (dlinfo(handle, RTLD_DI_LINKMAP, &map) == 0) library.file = map->l_name;
     library.has_symbol = dlsym(handle, "touchtrial_stand_in") != nullptr;
     dlclose(handle);
   }
-  library.file = std::filesystem::weakly_canonical(library.file, none);
+  library.file = std::filesystem::weakly_canonical(library.file, ignored);
   return library;
 }
 
-/// Detects a bus of umockdev, or of the kernel's USB emulator. A bus over a network does not count,
-/// because it can have real devices.
-bool usb_is_emulated() {
+/// Detects a bus of umockdev or of the kernel's USB emulator. A bus over a network does not count,
+/// because real devices may be connected to it.
+bool is_usb_emulated() {
   if (std::getenv("UMOCKDEV_DIR") != nullptr) return true;
-  std::error_code none;
+  std::error_code ignored;
   const std::filesystem::directory_iterator controllers("/sys/bus/platform/drivers/dummy_hcd",
-                                                        none);
+                                                        ignored);
   return std::any_of(begin(controllers), end(controllers), [](const auto& entry) {
     return entry.path().filename().string().starts_with("dummy_hcd.");
   });
 }
 
-/// Several numbers are one text, because a JSON list would take a line for each.
+/// Writes several numbers as one text, because a JSON list would need a line for each.
 nlohmann::ordered_json value_of(const Finding& finding) {
   if (!finding.word.empty()) return finding.word;
   if (finding.numbers.size() == 1) return finding.numbers.front();
@@ -125,12 +125,12 @@ double BringUp::number(std::string_view name) const noexcept {
 }
 
 void BringUp::note(const std::string& name, std::vector<double> numbers) {
-  Finding& finding = noted(findings, name);
+  Finding& finding = find_or_add(findings, name);
   finding.numbers = std::move(numbers);
 }
 
 void BringUp::note(const std::string& name, std::string_view word) {
-  noted(findings, name).word = word;
+  find_or_add(findings, name).word = word;
 }
 
 std::string signed_name(int sign, DeviceAxis axis) {
@@ -146,17 +146,17 @@ bool followed_axis(const BringUp& record, DeviceAxis axis) {
 PushSign sign_of_push(const BringUp& record, DeviceAxis axis, int sign) {
   const std::string name = signed_name(sign, axis);
   const Finding* const felt = record.find("felt " + name);
-  if (felt == nullptr || felt->word == kSides.back()) return PushSign::not_felt;
+  if (felt == nullptr || felt->word == kPushDirections.back()) return PushSign::not_felt;
   const std::size_t pair = axis == DeviceAxis::x ? 0 : axis == DeviceAxis::y ? 2 : 4;
   const double along_mm = sign * dot(vec_of(record.find("moved_mm " + name)), direction_of(axis));
-  const bool is_right = felt->word == kSides.at(pair + (sign > 0 ? 0 : 1));
-  return is_right && along_mm >= -kMaxBackwardMm ? PushSign::right : PushSign::wrong;
+  const bool is_expected_direction = felt->word == kPushDirections.at(pair + (sign > 0 ? 0 : 1));
+  return is_expected_direction && along_mm >= -kMaxBackwardMm ? PushSign::correct : PushSign::wrong;
 }
 
 bool BringUp::signs_confirmed() const {
   return std::ranges::all_of(kDeviceAxes, [&](DeviceAxis axis) {
-    return followed_axis(*this, axis) && sign_of_push(*this, axis, 1) == PushSign::right &&
-           sign_of_push(*this, axis, -1) == PushSign::right;
+    return followed_axis(*this, axis) && sign_of_push(*this, axis, 1) == PushSign::correct &&
+           sign_of_push(*this, axis, -1) == PushSign::correct;
   });
 }
 
@@ -168,25 +168,26 @@ std::string stand_in_of(const DeviceInfo& device, const DeviceSettings& settings
   }
   const LoadedLibrary library = loaded_library(library_of(device.name, settings));
   if (library.has_symbol) return "the library identifies itself as a stand-in";
-  if (is_stand_in_name(library.named.string()) || is_stand_in_name(library.file.string())) {
+  if (is_stand_in_name(library.configured_name.string()) ||
+      is_stand_in_name(library.file.string())) {
     return "the library's file or folder has a stand-in's name";
   }
-  return usb_is_emulated() ? "a USB bus of the machine is emulated" : "";
+  return is_usb_emulated() ? "a USB bus of the machine is emulated" : "";
 }
 
 BringUp bring_up_of(const DeviceInfo& device) {
-  const auto anonymous = [&](std::string text) {
-    for (std::size_t at = 0;
-         !device.serial.empty() && (at = text.find(device.serial, at)) != std::string::npos;) {
-      text.replace(at, device.serial.size(), "#");
+  const auto without_serial = [&](std::string text) {
+    for (std::size_t start = 0; !device.serial.empty() &&
+                                (start = text.find(device.serial, start)) != std::string::npos;) {
+      text.replace(start, device.serial.size(), "#");
     }
     return text;
   };
   BringUp record;
   record.driver = device.name;
-  record.model = anonymous(device.model);
-  record.firmware = anonymous(device.firmware);
-  record.library = anonymous(device.library);
+  record.model = without_serial(device.model);
+  record.firmware = without_serial(device.firmware);
+  record.library = without_serial(device.library);
   if (!device.serial.empty()) {
     FieldHasher hasher;
     hasher.add("touchtrial bring-up");
@@ -194,22 +195,22 @@ BringUp bring_up_of(const DeviceInfo& device) {
     hasher.add(device.serial);
     record.device_mark = to_hex(hasher.finish()).substr(0, 4);
   }
-  const auto note_known = [&](const char* name, double number) {
+  const auto add_if_positive = [&](const char* name, double number) {
     if (number > 0.0) record.note(name, {number});
   };
-  note_known("peak_force_n", device.max_force_n);
-  note_known("continuous_force_n", device.continuous_force_n);
-  note_known("max_stiffness_n_per_mm", device.max_stiffness_n_per_mm);
-  // Meaningful only together with the stiffness.
+  add_if_positive("peak_force_n", device.max_force_n);
+  add_if_positive("continuous_force_n", device.continuous_force_n);
+  add_if_positive("max_stiffness_n_per_mm", device.max_stiffness_n_per_mm);
+  // Meaningful only if the stiffness is known.
   if (device.max_stiffness_n_per_mm > 0.0)
-    note_known("max_damping_n_s_per_mm", device.max_damping_n_s_per_mm);
-  note_known("max_rate_hz", device.max_rate_hz);
-  if (device.workspace) note_extent(record, "workspace_mm ", *device.workspace);
+    add_if_positive("max_damping_n_s_per_mm", device.max_damping_n_s_per_mm);
+  add_if_positive("max_rate_hz", device.max_rate_hz);
+  if (device.workspace) add_extent(record, "workspace_mm ", *device.workspace);
   record.outcome(BringUpStep::open) = StepOutcome::done;
   return record;
 }
 
-void note_extent(BringUp& record, const std::string& name, const Workspace& extent) {
+void add_extent(BringUp& record, const std::string& name, const Workspace& extent) {
   for (const DeviceAxis axis : kDeviceAxes) {
     const Vec3 along = direction_of(axis);
     record.note(name + std::string(name_of(axis)),
@@ -230,7 +231,7 @@ std::string bring_up_json(const BringUp& record) {
                        {"scheduling", record.scheduling},
                        {"memory_locked", record.memory_locked},
                        {"ended", name_of(record.ended)},
-                       {"why", record.why}};
+                       {"why", record.reason}};
   for (std::size_t i = 0; i < kBringUpSteps; ++i) {
     file["steps"][std::string(kStepNames[i])] = name_of(record.outcomes.at(i));
   }

@@ -10,38 +10,38 @@ namespace {
 
 using Id = ConformanceId;
 
-struct CheckWords {
+struct CheckText {
   Id id;
   std::string_view name;
   std::string_view meaning;
-  bool of_plugin = false;
+  bool with_plugin_checks = false;
 };
 
-constexpr std::array<CheckWords, 21> kCheckWords = {{
+constexpr std::array<CheckText, 21> kCheckTexts = {{
     {Id::library, "interface", "The library loads and has version, size, functions and a name.",
      true},
     {Id::opening, "opens", "The device opens."},
     {Id::description, "describes itself", "Force, rate, stiffness and workspace are in range."},
-    {Id::memory, "keeps to its memory", "Writes no further than the structures it is given.", true},
-    {Id::staying, "stays up", "Reports no fault while nothing is wrong."},
-    {Id::numbering, "numbers readings", "A new number for each new reading, and never a smaller."},
-    {Id::values, "plausible values",
-     "Positions and velocities are numbers that a device can have."},
-    {Id::workspace, "inside its workspace", "Positions lie in the described workspace, or nearly."},
+    {Id::memory, "keeps to its memory", "Does not write beyond the structures it is given.", true},
+    {Id::staying, "stays up", "Reports no fault without a cause."},
+    {Id::numbering, "numbers readings", "Each new reading has a larger number."},
+    {Id::values, "plausible values", "Positions and velocities are possible for a device."},
+    {Id::workspace, "inside its workspace", "Positions are in or near the described workspace."},
     {Id::velocity, "velocity fits position", "The velocity is the change of position, in mm/s."},
-    {Id::rate, "rate", "New readings come at half the described rate or more, and 500 a second."},
+    {Id::rate, "rate", "At least half the described rate and 500 new readings per second."},
     {Id::gaps, "no gaps", "No reading is older than 10 ms: the safety chain would end the run."},
     {Id::unready_zero, "zero before ready", "No force on the motors before the device is ready."},
     {Id::rest_zero, "zero when told zero", "No force on the motors while the servo sends zero."},
-    {Id::pushing, "sends what it is told", "The motors are told the servo's force, on each axis."},
+    {Id::pushing, "sends what it is told", "The motors receive the servo's force on each axis."},
     {Id::lapsing, "zero without a servo", "The force ends 10 ms after the servo's last write."},
-    {Id::halting, "zero after halt", "The force ends at once, and until a person re-arms."},
+    {Id::halting, "zero after halt", "The force ends at once and stays zero until re-arming."},
     {Id::rearming, "force after re-arming", "After that, forces pass again."},
-    {Id::closing_zero, "zero after closing", "A closed device is left without force."},
+    {Id::closing_zero, "zero after closing", "A closed device exerts no force."},
     {Id::opening_twice, "opened twice", "A second opening is refused, or leaves the first intact."},
-    {Id::reopening, "opens again", "After closing it opens again, as the same device."},
+    {Id::reopening, "opens again", "After closing, it reopens as the same device."},
     {Id::calls, "short calls",
-     "sample and force take less than half a period (99 %), and never 10 ms.", true},
+     "sample and force together take less than half a period (99 %), and always less than 10 ms.",
+     true},
 }};
 
 }  // namespace
@@ -54,13 +54,14 @@ void ConformanceRecord::fail(ConformanceId id, std::string finding) {
   if (!failed(id)) entries_[id] = {ConformanceOutcome::failed, std::move(finding)};
 }
 
-void ConformanceRecord::leave(ConformanceId id, std::string reason) {
+void ConformanceRecord::set_not_observed(ConformanceId id, std::string reason) {
   entries_.try_emplace(id, Entry{ConformanceOutcome::not_observed, std::move(reason)});
 }
 
-void ConformanceRecord::leave_rest(const std::string& reason, bool of_plugin) {
-  for (const CheckWords& words : kCheckWords) {
-    if (of_plugin || !words.of_plugin) leave(words.id, reason);
+void ConformanceRecord::set_remaining_not_observed(const std::string& reason,
+                                                   bool with_plugin_checks) {
+  for (const CheckText& text : kCheckTexts) {
+    if (with_plugin_checks || !text.with_plugin_checks) set_not_observed(text.id, reason);
   }
 }
 
@@ -75,14 +76,14 @@ void ConformanceRecord::add(const std::vector<ConformanceCheck>& checks) {
   }
 }
 
-std::vector<ConformanceCheck> ConformanceRecord::checks(bool of_plugin) const {
+std::vector<ConformanceCheck> ConformanceRecord::checks(bool with_plugin_checks) const {
   std::vector<ConformanceCheck> all;
-  for (const CheckWords& words : kCheckWords) {
-    const auto found = entries_.find(words.id);
-    const bool is_shown = found != entries_.end() || !words.of_plugin || of_plugin;
+  for (const CheckText& text : kCheckTexts) {
+    const auto found = entries_.find(text.id);
+    const bool is_shown = found != entries_.end() || !text.with_plugin_checks || with_plugin_checks;
     if (!is_shown) continue;
     const Entry entry = found == entries_.end() ? Entry{} : found->second;
-    all.push_back({words.id, words.name, words.meaning, entry.outcome, entry.finding});
+    all.push_back({text.id, text.name, text.meaning, entry.outcome, entry.finding});
   }
   return all;
 }

@@ -15,11 +15,11 @@ namespace touchtrial::device {
 namespace {
 
 constexpr double kMaxCallUs = 10'000.0;
-/// As a share of the period; the rest is for the device and the host.
-constexpr double kShareOfCalls = 0.5;
+/// Share of the period; the rest is for the device and the host.
+constexpr double kMaxCallShare = 0.5;
 
-ConformanceId check_of(plugin::PluginFault trouble) noexcept {
-  switch (trouble) {
+ConformanceId check_of(plugin::PluginFault plugin_fault) noexcept {
+  switch (plugin_fault) {
     case plugin::PluginFault::sequence_decreased:
       return ConformanceId::numbering;
     case plugin::PluginFault::wrote_past:
@@ -33,18 +33,18 @@ ConformanceId check_of(plugin::PluginFault trouble) noexcept {
   }
 }
 
-std::optional<ConformanceBlame> blame_of(const HapticDevice& device) {
+std::optional<DriverFailure> driver_failure_of(const HapticDevice& device) {
   const auto* const plugin = dynamic_cast<const PluginDevice*>(&device);
   if (plugin == nullptr) return std::nullopt;
-  const plugin::PluginFault trouble = plugin->trouble();
-  if (trouble == plugin::PluginFault::none) return std::nullopt;
-  return ConformanceBlame{check_of(trouble), plugin::words_for(trouble)};
+  const plugin::PluginFault plugin_fault = plugin->plugin_fault();
+  if (plugin_fault == plugin::PluginFault::none) return std::nullopt;
+  return DriverFailure{check_of(plugin_fault), plugin::fault_text(plugin_fault)};
 }
 
 /// Runs one step of the checks.
 /// \return whether it succeeded; else the check fails with the error's message
 template <typename Step>
-bool may_continue(ConformanceId id, ConformanceRecord& record, const Step& step) {
+bool run_conformance_step(ConformanceId id, ConformanceRecord& record, const Step& step) {
   try {
     step();
     return true;
@@ -55,27 +55,27 @@ bool may_continue(ConformanceId id, ConformanceRecord& record, const Step& step)
 }
 
 /// Loads, opens and describes the plug-in; each step is a separate check.
-/// \return nothing if one failed
+/// \return the description; nothing if a step failed
 std::optional<DeviceInfo> try_interface(const PluginSettings& settings, ConformanceRecord& record) {
   std::optional<plugin::Library> library;
   std::optional<plugin::OpenDevice> opened;
   std::optional<DeviceInfo> info;
-  const bool good =
-      may_continue(ConformanceId::library, record,
-                   [&] {
-                     check_loads(settings.library, plugin::kRemedy);
-                     library.emplace(settings.library);
-                   }) &&
-      may_continue(ConformanceId::opening, record,
-                   [&] { opened.emplace(*library, settings.settings); }) &&
-      may_continue(ConformanceId::description, record, [&] { info = opened->info(); });
+  const bool all_passed =
+      run_conformance_step(ConformanceId::library, record,
+                           [&] {
+                             check_loads(settings.library, plugin::kRemedy);
+                             library.emplace(settings.library);
+                           }) &&
+      run_conformance_step(ConformanceId::opening, record,
+                           [&] { opened.emplace(*library, settings.settings); }) &&
+      run_conformance_step(ConformanceId::description, record, [&] { info = opened->info(); });
   if (library) {
     record.pass(ConformanceId::library, "driver " + library->name());
   }
-  return good ? info : std::nullopt;
+  return all_passed ? info : std::nullopt;
 }
 
-/// Times calls of the plug-in like those of its thread, without force.
+/// Measures calls of the plug-in as its thread makes them, without force.
 void measure_calls(const PluginSettings& settings, double rate_hz, ServoClock& clock,
                    const ConformanceOptions& options, DurationHistogram& durations) {
   const plugin::Library library(settings.library);
@@ -87,31 +87,31 @@ void measure_calls(const PluginSettings& settings, double rate_hz, ServoClock& c
     if (options.stopped && options.stopped()) return;
     next += period;
     clock.wait_until(next);
-    const ServoClock::Time begun = monotonic_now();
-    const plugin::PluginFault trouble = device.sample().trouble;
-    if (trouble != plugin::PluginFault::none || device.force({}) != plugin::PluginFault::none)
+    const ServoClock::Time start = monotonic_now();
+    const plugin::PluginFault plugin_fault = device.sample().plugin_fault;
+    if (plugin_fault != plugin::PluginFault::none || device.force({}) != plugin::PluginFault::none)
       return;
-    durations.add(monotonic_now() - begun);
+    durations.add(monotonic_now() - start);
   }
 }
 
 void check_calls(const PluginSettings& settings, double rate_hz, ServoClock& clock,
                  const ConformanceOptions& options, ConformanceRecord& record) {
   DurationHistogram durations;
-  const bool opened = may_continue(ConformanceId::reopening, record, [&] {
+  const bool opened = run_conformance_step(ConformanceId::reopening, record, [&] {
     ServoThread thread;
     thread.run([&] { measure_calls(settings, rate_hz, clock, options, durations); });
   });
   if (!opened || durations.count() == 0) {
-    return record.leave(ConformanceId::calls, "an earlier check failed");
+    return record.set_not_observed(ConformanceId::calls, "an earlier check failed");
   }
   const double p99_us = durations.percentile_us(0.99);
   const double worst_us = 1e-3 * static_cast<double>(durations.worst().count());
   const std::string finding =
       fmt::format("99 % within {:.0f} us, worst {:.0f} us", p99_us, worst_us);
   if (!options.judges_calls) {
-    record.leave(ConformanceId::calls, finding + "; not judged");
-  } else if (p99_us <= kShareOfCalls * 1e6 / rate_hz && worst_us < kMaxCallUs) {
+    record.set_not_observed(ConformanceId::calls, finding + "; not judged");
+  } else if (p99_us <= kMaxCallShare * 1e6 / rate_hz && worst_us < kMaxCallUs) {
     record.pass(ConformanceId::calls, finding);
   } else {
     record.fail(ConformanceId::calls, finding);
@@ -122,21 +122,21 @@ void check_calls(const PluginSettings& settings, double rate_hz, ServoClock& clo
 
 std::vector<ConformanceCheck> check_plugin_conformance(
     const PluginSettings& settings, ServoClock& clock, const ConformanceOptions& options,
-    const std::function<PluginOptions()>& options_of_opening) {
+    const std::function<PluginOptions()>& make_options) {
   ConformanceRecord record;
   const std::optional<DeviceInfo> info = try_interface(settings, record);
   if (!info) {
-    record.leave_rest("an earlier check failed", true);
+    record.set_remaining_not_observed("an earlier check failed", true);
     return record.checks(true);
   }
   const plugin::Library library(settings.library);
   ConformanceSubject subject;
-  subject.open = [&] { return std::make_unique<PluginDevice>(settings, options_of_opening()); };
+  subject.open = [&] { return std::make_unique<PluginDevice>(settings, make_options()); };
   subject.motor_force_n = [&] { return library.observed_force_n(); };
-  subject.blame = blame_of;
+  subject.find_failure = driver_failure_of;
   record.add(check_conformance(subject, clock, options));
   if (options.stopped && options.stopped()) {
-    record.leave_rest("the check was stopped", true);
+    record.set_remaining_not_observed("the check was stopped", true);
     return record.checks(true);
   }
   if (!record.has(ConformanceId::memory)) record.pass(ConformanceId::memory);

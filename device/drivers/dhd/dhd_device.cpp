@@ -6,7 +6,7 @@
 #include "device/drivers/dhd/dhd_loop.hpp"
 #include "device/drivers/dhd/dhd_models.hpp"
 #include "device/drivers/drivers.hpp"
-#include "device/drivers/only_user.hpp"
+#include "device/drivers/exclusive_use.hpp"
 
 #include <algorithm>
 #include <array>
@@ -25,18 +25,18 @@ namespace touchtrial::device {
 namespace dhd {
 namespace {
 
-/// A mass that differs more than this from the device's own is a typing error: 0.2 kg push with 2
-/// N.
+/// A larger difference from the device's own mass is refused as a typing error: a difference of
+/// 0.2 kg pushes with 2 N.
 constexpr double kMaxMassChangeKg = 0.2;
 /// During the vendor's automatic motion of the arm: 32 ms.
 constexpr unsigned char kMaxWatchdog = 255;
 /// For an unknown model, a weight above this share of the peak force is implausible.
 constexpr double kMaxWeightShare = 0.5;
 
-/// The library removes the weight within 250 ms of exchanges.
-constexpr int kPollsToShedWeight = 300;
+/// The library removes the weight from its forces within 250 ms of exchanges.
+constexpr int kPollsToRemoveWeight = 300;
 
-/// The library's name for an unnamed type.
+/// The library's name for a type without a name.
 constexpr std::string_view kNoName = "unknown device";
 
 constexpr const char* kCalibrate =
@@ -44,10 +44,10 @@ constexpr const char* kCalibrate =
     "the pit; delta: sweep each axis from end to end) until the status light stops blinking, or "
     "run touchtrial device initialise dhd, which moves the arm";
 
-/// \return whether this program has the device open; a second opening would disconnect the first
-std::atomic<bool>& in_use(int index) {
-  static std::array<std::atomic<bool>, 64> of_index{};
-  return of_index[static_cast<std::size_t>(std::clamp(index, 0, 63))];
+/// \return the flag of a device that this program has open; opening it twice would disconnect it
+std::atomic<bool>& in_use_flag(int index) {
+  static std::array<std::atomic<bool>, 64> flags{};
+  return flags[static_cast<std::size_t>(std::clamp(index, 0, 63))];
 }
 
 std::string version_text(double version) {
@@ -61,22 +61,22 @@ std::string version_text(double version) {
 /// settings, and closes the device. Belongs to the thread that opens it.
 class Session {
  public:
-  /// \throws DeviceError with the remedy if the library cannot be used or the device not opened
+  /// \throws DeviceError with the remedy if the library or the device cannot be opened
   explicit Session(const DhdSettings& settings)
       : settings_(settings),
         library_(settings.library),
-        only_user_(in_use(settings.index), "dhd: this program has device " +
-                                               std::to_string(settings.index) +
-                                               " open already; close that one first"),
-        device_(opened(settings.index)) {
+        exclusive_use_(in_use_flag(settings.index), "dhd: this program has device " +
+                                                        std::to_string(settings.index) +
+                                                        " open already; close it first"),
+        device_(open_device_id(settings.index)) {
     if (api().get_system_type != nullptr) model_ = model_of(api().get_system_type(device_));
-    own_mass_kg_ = mass_of_device_kg();
+    device_mass_kg_ = reported_mass_kg();
   }
   ~Session() {
     (void)api().enable_force(0, device_);
     if (watchdog_) set_watchdog(*watchdog_);
-    if (own_mass_kg_ && is_mass_changed_) {
-      (void)api().set_effector_mass(*own_mass_kg_, device_);
+    if (device_mass_kg_ && is_mass_changed_) {
+      (void)api().set_effector_mass(*device_mass_kg_, device_);
     }
     (void)(api().has_drd() ? api().drd_close(device_) : api().close(device_));
   }
@@ -111,16 +111,16 @@ class Session {
   void check_mass(const DeviceInfo& info) const {
     check_change_of_mass();
     const std::optional<double> max_n = max_weight_n(info);
-    const double mass_kg =
-        settings_.effector_mass_kg > 0.0 ? settings_.effector_mass_kg : own_mass_kg_.value_or(0.0);
+    const double mass_kg = settings_.effector_mass_kg > 0.0 ? settings_.effector_mass_kg
+                                                            : device_mass_kg_.value_or(0.0);
     if (!max_n || (mass_kg >= 0.0 && kStandardGravityMS2 * mass_kg <= *max_n)) return;
-    throw DeviceError("dhd: the library would carry an end-effector of " + number_text(mass_kg) +
-                      " kg, but no device of this model (" + info.model + ") weighs more than " +
-                      number_text(*max_n) +
-                      " N with its arms; set dhd.effector_mass_kg to what the scales say, or "
+    throw DeviceError("dhd: the library would compensate an end-effector of " +
+                      number_text(mass_kg) + " kg, but arms and end-effector of this model (" +
+                      info.model + ") weigh at most " + number_text(*max_n) +
+                      " N; weigh the end-effector and set dhd.effector_mass_kg, or set "
                       "dhd.gravity_compensation to false");
   }
-  /// Name, serial number and so on, independent of settings.
+  /// \return only what the library reports, independent of settings
   [[nodiscard]] DeviceInfo identity() const {
     DeviceInfo info;
     info.name = "dhd";
@@ -155,8 +155,8 @@ class Session {
 
   /// Sets mass, limits and watchdogs, with force off.
   /// \param limit_n  of the rendered force, > 0
-  /// \param max_weight_n  as max_weight_n()
-  /// \throws DeviceError naming what failed
+  /// \param max_weight_n  from max_weight_n()
+  /// \throws DeviceError naming the call that failed
   void configure(double limit_n, std::optional<double> max_weight_n) {
     expect(api().enable_force(0, device_), "switching force off");
     set_mass();
@@ -168,32 +168,32 @@ class Session {
     if (api().set_max_force != nullptr) {
       (void)api().set_max_force(limit_n + max_weight_n.value_or(0.0), device_);
     }
-    keep_watchdog(kWatchdog);
-    if (!has_switch()) shed_weight();
+    start_watchdog(kWatchdog);
+    if (!has_switch()) wait_until_weight_is_removed();
     expect(api().set_force(0.0, 0.0, 0.0, device_), "zero force");
   }
 
-  /// Makes the device switch force off without a command for this many times 125 us. Firmware
-  /// before version 3 has no watchdog, so it depends on our zeros.
-  void keep_watchdog(unsigned char value) {
+  /// Makes the device switch force off after this many times 125 us without a command. Firmware
+  /// before version 3 has no watchdog, so it depends on the zeros that the driver sends.
+  void start_watchdog(unsigned char value) {
     if (api().set_watchdog == nullptr) return;
-    unsigned char before = 0;
+    unsigned char previous_watchdog = 0;
     if (api().get_watchdog != nullptr) {
-      (void)as_expert(api(), [&] { return api().get_watchdog(&before, device_); });
+      (void)as_expert(api(), [&] { return api().get_watchdog(&previous_watchdog, device_); });
     }
-    if (set_watchdog(value) >= 0) watchdog_ = before;
+    if (set_watchdog(value) >= 0) watchdog_ = previous_watchdog;
   }
 
   /// \throws DeviceError if the library reports an implausible weight of a calibrated device
   void check_weight(double max_n) const {
     if (!is_calibrated()) return;
-    const std::optional<Vec3> weight_n = added_weight_n(api(), device_);
+    const std::optional<Vec3> weight_n = compensated_weight_n(api(), device_);
     if (!weight_n || is_plausible_weight(*weight_n, max_n)) return;
     throw DeviceError("dhd: the library would add (" + number_text(weight_n->x) + ", " +
                       number_text(weight_n->y) + ", " + number_text(weight_n->z) +
-                      ") N to every force for the weight of arms and end-effector, where at most " +
+                      ") N to every force for the weight of arms and end-effector, but at most " +
                       number_text(max_n) +
-                      " N upwards can be true; calibrate the device again, or set "
+                      " N upwards are plausible; calibrate the device again, or set "
                       "dhd.gravity_compensation to false");
   }
 
@@ -202,15 +202,15 @@ class Session {
   [[nodiscard]] bool has_switch() const noexcept { return !model_ || model_->has_switch; }
 
   /// Exchanges positions until the library no longer adds a weight to forces.
-  void shed_weight() const {
-    for (int poll = 0; poll < kPollsToShedWeight; ++poll) {
+  void wait_until_weight_is_removed() const {
+    for (int poll = 0; poll < kPollsToRemoveWeight; ++poll) {
       Vec3 position_m;
       (void)api().get_position(&position_m.x, &position_m.y, &position_m.z, device_);
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   }
 
-  [[nodiscard]] char opened(int index) const {
+  [[nodiscard]] char open_device_id(int index) const {
     const int count = library_.device_count();
     if (index < 0 || index >= count) {
       throw DeviceError(
@@ -227,40 +227,41 @@ class Session {
         "USB node (scripts/install-udev-rules)"));
   }
 
-  [[nodiscard]] double force_n(const std::optional<double>& set_n, double max_n,
+  [[nodiscard]] double force_n(const std::optional<double>& setting_n, double max_n,
                                const std::string& key) const {
-    if (!set_n && max_n == 0.0) refuse_unknown(identity().model, key);
-    if (set_n && max_n > 0.0 && *set_n > max_n) {
-      throw DeviceError("dhd: dhd." + key + " is " + number_text(*set_n) + " N, more than the " +
-                        number_text(max_n) + " N of a device of this model (" + model_->name +
-                        "); set it to what the data sheet says, or leave it out");
+    if (!setting_n && max_n == 0.0) refuse_unknown(identity().model, key);
+    if (setting_n && max_n > 0.0 && *setting_n > max_n) {
+      throw DeviceError("dhd: dhd." + key + " is " + number_text(*setting_n) +
+                        " N, more than the " + number_text(max_n) +
+                        " N of a device of this model (" + model_->name +
+                        "); set it to the value in the data sheet, or leave it out");
     }
-    return set_n.value_or(max_n);
+    return setting_n.value_or(max_n);
   }
   [[noreturn]] static void refuse_unknown(const std::string& model, const std::string& key) {
-    throw DeviceError(one_line("dhd: the size and the strength of this device (" + model +
-                               ") are not known; take them from its data sheet and set dhd." + key +
+    throw DeviceError(one_line("dhd: workspace and force of this device (" + model +
+                               ") are unknown; look them up in its data sheet and set dhd." + key +
                                " (dhd.max_force_n, dhd.continuous_force_n, dhd.workspace_mm)"));
   }
 
   void check_change_of_mass() const {
     const double mass_kg = settings_.effector_mass_kg;
-    const double change_kg = std::abs(mass_kg - own_mass_kg_.value_or(0.0));
+    const double change_kg = std::abs(mass_kg - device_mass_kg_.value_or(0.0));
     if (mass_kg == 0.0 || change_kg <= kMaxMassChangeKg) return;
     const double push_n = std::round(10.0 * kStandardGravityMS2 * change_kg) / 10.0;
     throw DeviceError(
         "dhd: dhd.effector_mass_kg is " + number_text(mass_kg) + ", but the device " +
-        (own_mass_kg_ ? "says " + number_text(*own_mass_kg_) : "does not say its own") +
+        (device_mass_kg_ ? "reports " + number_text(*device_mass_kg_) : "reports none") +
         ", and the difference would push with " + number_text(push_n) +
         " N; weigh the end-effector again: a change of more than " + number_text(kMaxMassChangeKg) +
         " kg is refused");
   }
 
-  [[nodiscard]] std::optional<double> mass_of_device_kg() const {
+  [[nodiscard]] std::optional<double> reported_mass_kg() const {
     double mass_kg = 0.0;
-    const bool known = api().get_effector_mass != nullptr &&
-                       api().get_effector_mass(&mass_kg, device_) >= 0 && std::isfinite(mass_kg);
-    return known ? std::optional(mass_kg) : std::nullopt;
+    const bool has_mass = api().get_effector_mass != nullptr &&
+                          api().get_effector_mass(&mass_kg, device_) >= 0 && std::isfinite(mass_kg);
+    return has_mass ? std::optional(mass_kg) : std::nullopt;
   }
 
   void set_mass() {
@@ -278,18 +279,18 @@ class Session {
     return as_expert(api(), [&]() noexcept { return api().set_watchdog(value, device_); });
   }
 
-  void expect(int result, const std::string& what) const {
+  void expect(int result, const std::string& call) const {
     if (result >= 0) return;
-    throw DeviceError(one_line("dhd: " + what + " was refused: " + library_.last_error() +
+    throw DeviceError(one_line("dhd: " + call + " was refused: " + library_.last_error() +
                                "; run the vendor's diagnostic"));
   }
 
   DhdSettings settings_;
   Library library_;
-  OnlyUser only_user_;
+  ExclusiveUse exclusive_use_;
   char device_;
   std::optional<Model> model_;
-  std::optional<double> own_mass_kg_;
+  std::optional<double> device_mass_kg_;
   bool is_mass_changed_ = false;
   std::optional<unsigned char> watchdog_;  ///< the previous value; nothing: no watchdog
 };
@@ -321,42 +322,42 @@ DeviceListing listing_of(DhdSettings settings, int index) {
 }
 
 std::vector<DeviceListing> list_dhd(const DeviceSettings& settings) {
-  DeviceListing nothing = empty_listing(settings.dhd);
+  DeviceListing listing = empty_listing(settings.dhd);
   try {
     const Library library(settings.dhd.library);
-    nothing.where = library.file().string();
+    listing.where = library.file().string();
     const int count = library.device_count();
-    std::vector<DeviceListing> found;
-    for (int i = 0; i < count; ++i) found.push_back(listing_of(settings.dhd, i));
-    if (count > 0) return found;
-    nothing.missing = {
+    std::vector<DeviceListing> listings;
+    for (int i = 0; i < count; ++i) listings.push_back(listing_of(settings.dhd, i));
+    if (count > 0) return listings;
+    listing.missing = {
         "no device is connected; switch it on, plug it in, and give the user access to its USB "
         "node (scripts/install-udev-rules)"};
   } catch (const DeviceError& error) {
-    nothing.missing = {error.what()};
+    listing.missing = {error.what()};
   }
-  return {nothing};
+  return {listing};
 }
 
 std::unique_ptr<HapticDevice> open_dhd(const DeviceSettings& settings) {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
+  constexpr double kNoLimit = std::numeric_limits<double>::infinity();
   return std::make_unique<DhdDevice>(settings.dhd,
-                                     settings.use_of("dhd").limits.max_force_n.value_or(kNone));
+                                     settings.use_of("dhd").limits.max_force_n.value_or(kNoLimit));
 }
 
-/// The device's watchdog stops the motion if this process is killed.
+/// If this process is killed, the device's watchdog stops the motion.
 std::string initialise_dhd(const DeviceSettings& settings) {
   Session session(settings.dhd);
   const Api& api = session.api();
   if (!api.has_drd() || api.drd_auto_init == nullptr) {
     throw DeviceError(one_line(
         "dhd: " + session.library().file().string() +
-        " cannot initialise a device; name libdrd.so of the SDK at dhd.library, or do it by hand: "
+        " cannot initialise a device; name the SDK's libdrd.so at dhd.library, or do it by hand: "
         "the device " +
         kCalibrate));
   }
-  if (session.is_calibrated()) return "is initialised already; nothing was moved";
-  session.keep_watchdog(kMaxWatchdog);
+  if (session.is_calibrated()) return "is initialised already; it was not moved";
+  session.start_watchdog(kMaxWatchdog);
   if (api.drd_auto_init(session.device()) < 0) {
     throw DeviceError(
         one_line("dhd: the device was not initialised: " + session.library().last_error() +
@@ -369,8 +370,8 @@ std::string initialise_dhd(const DeviceSettings& settings) {
 }  // namespace dhd
 
 /// Declared after the session it uses, so that the loop ends first.
-struct DhdDevice::Running {
-  Running(const DhdSettings& settings, double limit_n, std::chrono::nanoseconds (*now)())
+struct DhdDevice::Runtime {
+  Runtime(const DhdSettings& settings, double limit_n, std::chrono::nanoseconds (*now)())
       : session(settings), info(session.info()) {
     session.check_mass(info);
     const std::optional<double> max_weight_n = session.max_weight_n(info);
@@ -385,65 +386,65 @@ struct DhdDevice::Running {
 };
 
 DhdDevice::DhdDevice(const DhdSettings& settings, double limit_n, std::chrono::nanoseconds (*now)())
-    : running_(std::make_unique<Running>(settings, limit_n, now)) {}
+    : runtime_(std::make_unique<Runtime>(settings, limit_n, now)) {}
 
 DhdDevice::~DhdDevice() = default;
 
 DeviceInfo DhdDevice::info() const {
-  return running_->info;
+  return runtime_->info;
 }
 
 DeviceLink& DhdDevice::link() const noexcept {
-  return running_->loop->link();
+  return runtime_->loop->link();
 }
 
 DeviceReadiness DhdDevice::readiness() const noexcept {
-  return running_->loop->readiness();
+  return runtime_->loop->readiness();
 }
 
 /// Sources of unverified facts: this driver's page in docs/devices.
 DeviceDriver dhd_driver() {
-  return {.name = "dhd",
-          .what = "Force Dimension omega, delta, sigma and lambda, through the vendor's library",
-          .list = dhd::list_dhd,
-          .open = dhd::open_dhd,
-          .workspace_is_known = false,
-          .initialise = dhd::initialise_dhd,
-          .products = {{"omega", "Force Dimension omega", "omega_3"},
-                       {"delta", "Force Dimension delta"},
-                       {"sigma", "Force Dimension sigma"},
-                       {"lambda", "Force Dimension lambda"}},
-          .unverified = {
-              {"signs", "which way positions and forces run on each axis"},
-              {"force_scale", "whether a newton of the library is one at the handle"},
-              {"lengths", "whether a millimetre of the library is one at the handle"},
-              {"time_guard",
-               "whether the readings that come with the time guard's answer are new, at the loop's "
-               "rate"},
-              {"force_button",
-               "whether force comes on by the library's command alone",
-               "Did you have to press the force button at the device?",
-               {"yes", "no"}},
-              {"weight_carried",
-               "whether the library's weight is the arm's",
-               "You let go of the handle in free air, while force was on. What did it do?",
-               {"stayed", "sank", "rose", "sideways"}},
-              {"jolt",
-               "whether the jolt when force comes on is felt",
-               "Did the handle jolt when force came on?",
-               {"no", "slightly", "strongly"}},
-              {"watchdog", "whether the watchdog switches force off when the program stops"},
-              {"brakes",
-               "whether the brakes keep the arm from falling hard when force goes off",
-               "Force went off (program stopped, cable pulled, or the end). What did the arm do?",
-               {"stayed", "sank_slowly", "fell"}},
-              {"initialisation",
-               "whether an initialisation works with the watchdog of 32 ms that is set meanwhile",
-               "Did you run touchtrial device initialise?",
-               {"worked", "failed", "not_run"}},
-              {"slanted_base", "what the weight is on a base that is not level"},
-              {"force_left",
-               "whether a motor that carries the weight has the stated force left for the hand"}}};
+  return {
+      .name = "dhd",
+      .what = "Force Dimension omega, delta, sigma and lambda, through the vendor's library",
+      .list = dhd::list_dhd,
+      .open = dhd::open_dhd,
+      .workspace_is_known = false,
+      .initialise = dhd::initialise_dhd,
+      .products = {{"omega", "Force Dimension omega", "omega_3"},
+                   {"delta", "Force Dimension delta"},
+                   {"sigma", "Force Dimension sigma"},
+                   {"lambda", "Force Dimension lambda"}},
+      .unverified = {
+          {"signs", "the signs of positions and forces on each axis"},
+          {"force_scale", "whether the library's newton is a newton at the handle"},
+          {"lengths", "whether the library's millimetre is a millimetre at the handle"},
+          {"time_guard",
+           "whether readings returned with the time guard's result are new, at the loop's rate"},
+          {"force_button",
+           "whether the library's command alone switches force on",
+           "Did you have to press the force button on the device?",
+           {"yes", "no"}},
+          {"weight_carried",
+           "whether the library compensates the arm's true weight",
+           "You let go of the handle in free air, while force was on. What did it do?",
+           {"stayed", "sank", "rose", "sideways"}},
+          {"jolt",
+           "whether a jolt is felt when force switches on",
+           "Did the handle jolt when force came on?",
+           {"no", "slightly", "strongly"}},
+          {"watchdog", "whether the watchdog switches force off when the program stops"},
+          {"brakes",
+           "whether the brakes keep the arm from falling hard when force switches off",
+           "Force went off (program stopped, cable pulled, or the end). What did the arm do?",
+           {"stayed", "sank_slowly", "fell"}},
+          {"initialisation",
+           "whether initialisation works with the watchdog set to 32 ms",
+           "Did you run touchtrial device initialise?",
+           {"worked", "failed", "not_run"}},
+          {"slanted_base", "the compensated weight on a base that is not level"},
+          {"force_left",
+           "whether the motors can exert the stated force in addition to the weight"}}};
 }
 
 }  // namespace touchtrial::device

@@ -6,9 +6,9 @@
 namespace touchtrial::device::dhd {
 namespace {
 
-/// The sideways share of a weight allowed for an unlevel base and rounding.
+/// The horizontal share of a weight that is allowed, because the base may not be level.
 constexpr double kSidewaysShare = 0.3;
-constexpr double kSlackN = 0.2;
+constexpr double kSlackN = 0.2;  ///< tolerance for rounding
 
 constexpr unsigned char kAllJoints = 0xff;
 
@@ -22,16 +22,16 @@ constexpr Vec3 cross(Vec3 a, Vec3 b) noexcept {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-bool has_new_model(const Api& api) noexcept {
+bool has_new_functions(const Api& api) noexcept {
   return api.get_joint_angles != nullptr && api.joint_angles_to_gravity_joint_torques != nullptr;
 }
 
-bool has_old_model(const Api& api) noexcept {
+bool has_old_functions(const Api& api) noexcept {
   return api.get_delta_joint_angles != nullptr && api.delta_gravity_joint_torques != nullptr;
 }
 
-/// The function since version 3.16, which replaces the one for the arms only.
-std::optional<ArmJoints> joints_by_new_model(const Api& api, char device) noexcept {
+/// Uses the functions for all joints, since version 3.16; older versions cover only the arms.
+std::optional<ArmJoints> joints_from_new_functions(const Api& api, char device) noexcept {
   std::array<double, kJoints> angles{};
   std::array<double, kJoints> torques{};
   if (api.get_joint_angles(angles.data(), device) < 0 ||
@@ -42,7 +42,7 @@ std::optional<ArmJoints> joints_by_new_model(const Api& api, char device) noexce
   return ArmJoints{{angles[0], angles[1], angles[2]}, {torques[0], torques[1], torques[2]}};
 }
 
-std::optional<ArmJoints> joints_by_old_model(const Api& api, char device) noexcept {
+std::optional<ArmJoints> joints_from_old_functions(const Api& api, char device) noexcept {
   ArmJoints joints;
   auto& [a, b, c] = joints.angles_rad;
   Vec3& torques = joints.torques_nm;
@@ -53,7 +53,7 @@ std::optional<ArmJoints> joints_by_old_model(const Api& api, char device) noexce
   return joints;
 }
 
-/// By Cramer's rule.
+/// Solves J^T F = t by Cramer's rule.
 /// \param jacobian  rows are x, y and z, columns the joints
 std::optional<Vec3> force_of_torques(const double (&jacobian)[3][3], Vec3 torques_nm) noexcept {
   // Columns of J, which are the rows of J^T.
@@ -66,9 +66,10 @@ std::optional<Vec3> force_of_torques(const double (&jacobian)[3][3], Vec3 torque
          (torques_nm.x * cross(b, c) + torques_nm.y * cross(c, a) + torques_nm.z * cross(a, b));
 }
 
-std::optional<Vec3> modelled_force_n(const Api& api, char device) noexcept {
-  const std::optional<ArmJoints> joints =
-      has_new_model(api) ? joints_by_new_model(api, device) : joints_by_old_model(api, device);
+std::optional<Vec3> library_weight_n(const Api& api, char device) noexcept {
+  const std::optional<ArmJoints> joints = has_new_functions(api)
+                                              ? joints_from_new_functions(api, device)
+                                              : joints_from_old_functions(api, device);
   double jacobian[3][3] = {};
   if (!joints || api.delta_joint_angles_to_jacobian(joints->angles_rad[0], joints->angles_rad[1],
                                                     joints->angles_rad[2], jacobian, device) < 0) {
@@ -79,11 +80,11 @@ std::optional<Vec3> modelled_force_n(const Api& api, char device) noexcept {
 
 }  // namespace
 
-std::optional<Vec3> added_weight_n(const Api& api, char device) noexcept {
-  const bool tells =
-      api.delta_joint_angles_to_jacobian != nullptr && (has_new_model(api) || has_old_model(api));
-  if (!tells) return std::nullopt;
-  return as_expert(api, [&]() noexcept { return modelled_force_n(api, device); });
+std::optional<Vec3> compensated_weight_n(const Api& api, char device) noexcept {
+  const bool has_functions = api.delta_joint_angles_to_jacobian != nullptr &&
+                             (has_new_functions(api) || has_old_functions(api));
+  if (!has_functions) return std::nullopt;
+  return as_expert(api, [&]() noexcept { return library_weight_n(api, device); });
 }
 
 bool is_plausible_weight(Vec3 force_n, double max_n) noexcept {

@@ -10,17 +10,17 @@ namespace touchtrial::device::dhd {
 
 constexpr double kStandardGravityMS2 = 9.80665;
 
-/// The force with which the library carries arms and end-effector at their current position. The
-/// library gives the joint torques t and the Jacobian J of position by joint angles; the equivalent
-/// force at the end-effector solves J^T F = t. Neither allocates nor throws.
-/// \param device  open and calibrated, with gravity compensation on; soon after it was switched off,
-///   the library still reports a part
+/// The force with which the library supports arms and end-effector at their current position. The
+/// library reports the joint torques t and the Jacobian J of position by joint angles; the
+/// equivalent force at the end-effector solves J^T F = t. Does not allocate or throw.
+/// \param device  open and calibrated, with gravity compensation on; for a short time after it is
+///   switched off, the library still reports a part
 /// \return DHD's frame, N; nothing if the library does not report it
-[[nodiscard]] std::optional<Vec3> added_weight_n(const Api& api, char device) noexcept;
+[[nodiscard]] std::optional<Vec3> compensated_weight_n(const Api& api, char device) noexcept;
 
 /// \param force_n  DHD's frame
 /// \param max_n  > 0
-/// \return whether the force may be a weight: finite, neither down nor sideways, and at most max_n
+/// \return whether the force may support a weight: finite, upwards, and at most max_n
 [[nodiscard]] bool is_plausible_weight(Vec3 force_n, double max_n) noexcept;
 
 }  // namespace touchtrial::device::dhd

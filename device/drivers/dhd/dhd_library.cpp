@@ -10,8 +10,8 @@
 namespace touchtrial::device::dhd {
 
 const char* const kRemedy =
-    "install Force Dimension's SDK, and name its folder or the library in it in the device "
-    "settings at dhd.library";
+    "install Force Dimension's SDK, and name its folder or its library in the device settings at "
+    "dhd.library";
 
 namespace {
 
@@ -24,23 +24,23 @@ constexpr std::array<std::string_view, 2> kStems = {"libdrd.so", "libdhd.so"};
 /// \return the numbers after the stem: {3, 17, 6} for libdhd.so.3.17.6
 std::vector<int> version_of(std::string_view name, std::string_view stem) {
   std::vector<int> numbers;
-  std::string_view rest = name.substr(stem.size());
-  while (!rest.empty()) {
-    rest.remove_prefix(1);
-    numbers.push_back(std::atoi(std::string(rest.substr(0, rest.find('.'))).c_str()));
-    rest.remove_prefix(std::min(rest.find('.'), rest.size()));
+  std::string_view suffix = name.substr(stem.size());
+  while (!suffix.empty()) {
+    suffix.remove_prefix(1);
+    numbers.push_back(std::atoi(std::string(suffix.substr(0, suffix.find('.'))).c_str()));
+    suffix.remove_prefix(std::min(suffix.find('.'), suffix.size()));
   }
   return numbers;
 }
 
 bool is_version_of(std::string_view name, std::string_view stem) {
   if (!name.starts_with(stem)) return false;
-  const std::string_view rest = name.substr(stem.size());
-  return rest.empty() || (rest.front() == '.' && rest.size() > 1 &&
-                          rest.find_first_not_of(".0123456789") == std::string_view::npos);
+  const std::string_view suffix = name.substr(stem.size());
+  return suffix.empty() || (suffix.front() == '.' && suffix.size() > 1 &&
+                            suffix.find_first_not_of(".0123456789") == std::string_view::npos);
 }
 
-/// \return the names in a folder; empty if it cannot be read
+/// \return the sorted paths of a folder's entries; empty if it cannot be read
 std::vector<fs::path> entries_of(const fs::path& folder) {
   std::vector<fs::path> entries;
   std::error_code error;
@@ -52,7 +52,7 @@ std::vector<fs::path> entries_of(const fs::path& folder) {
   return entries;
 }
 
-void add_from(const fs::path& folder, std::string_view stem, std::vector<fs::path>& found) {
+void add_versions(const fs::path& folder, std::string_view stem, std::vector<fs::path>& libraries) {
   std::vector<fs::path> versions;
   for (const fs::path& entry : entries_of(folder)) {
     if (is_version_of(entry.filename().string(), stem)) versions.push_back(entry);
@@ -60,38 +60,38 @@ void add_from(const fs::path& folder, std::string_view stem, std::vector<fs::pat
   std::ranges::sort(versions, [&](const fs::path& a, const fs::path& b) {
     return version_of(a.filename().string(), stem) > version_of(b.filename().string(), stem);
   });
-  found.insert(found.end(), versions.begin(), versions.end());
+  libraries.insert(libraries.end(), versions.begin(), versions.end());
 }
 
-/// \return the possible library folders of a kit, including its top folder
-std::vector<fs::path> folders_of_kit(const fs::path& kit) {
-  std::vector<fs::path> folders = {kit};
-  for (const fs::path& system : entries_of(kit / "lib" / "release")) folders.push_back(system);
+/// \return the possible library folders of an SDK, including its top folder
+std::vector<fs::path> sdk_folders(const fs::path& sdk) {
+  std::vector<fs::path> folders = {sdk};
+  for (const fs::path& system : entries_of(sdk / "lib" / "release")) folders.push_back(system);
   return folders;
 }
 
 std::vector<fs::path> libraries_in(const std::vector<fs::path>& folders) {
-  std::vector<fs::path> found;
+  std::vector<fs::path> libraries;
   for (const std::string_view stem : kStems) {
-    for (const fs::path& folder : folders) add_from(folder, stem, found);
+    for (const fs::path& folder : folders) add_versions(folder, stem, libraries);
   }
-  return found;
+  return libraries;
 }
 
 void add_folders_of(const char* variable, std::vector<fs::path>& folders) {
   const char* const value = std::getenv(variable);
-  std::string_view rest = value == nullptr ? "" : value;
-  while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find(':'), rest.size());
-    if (end > 0) folders.emplace_back(rest.substr(0, end));
-    rest.remove_prefix(std::min(end + 1, rest.size()));
+  std::string_view folder_list = value == nullptr ? "" : value;
+  while (!folder_list.empty()) {
+    const std::size_t end = std::min(folder_list.find(':'), folder_list.size());
+    if (end > 0) folders.emplace_back(folder_list.substr(0, end));
+    folder_list.remove_prefix(std::min(end + 1, folder_list.size()));
   }
 }
 
 std::vector<fs::path> library_folders() {
   std::vector<fs::path> folders;
-  if (const char* const kit = std::getenv("FDSDK"); kit != nullptr && *kit != '\0') {
-    folders = folders_of_kit(kit);
+  if (const char* const sdk = std::getenv("FDSDK"); sdk != nullptr && *sdk != '\0') {
+    folders = sdk_folders(sdk);
   }
   add_folders_of("LD_LIBRARY_PATH", folders);
   folders.emplace_back("/usr/local/lib");
@@ -101,30 +101,30 @@ std::vector<fs::path> library_folders() {
   return folders;
 }
 
-bool is_there(const fs::path& candidate) {
+bool candidate_exists(const fs::path& candidate) {
   std::error_code error;
   return candidate.has_parent_path() && fs::exists(candidate, error);
 }
 
-/// Whether DynamicLibrary's error is the linker's message for a missing library.
+/// \return whether DynamicLibrary's error contains the linker's message for a missing library
 bool is_not_found(const DeviceError& error) {
   return std::string_view(error.what()).find("(cannot open shared object file") !=
          std::string_view::npos;
 }
 
 /// \return the first candidate that loads in a child process
-fs::path loadable(const fs::path& named) {
-  for (const fs::path& candidate : library_candidates(named)) {
+fs::path find_loadable(const fs::path& library) {
+  for (const fs::path& candidate : library_candidates(library)) {
     check_loads(candidate, kRemedy);
     try {
       const DynamicLibrary trial(candidate, Unload::never, kRemedy);
       return candidate;
     } catch (const DeviceError& error) {
-      if (is_there(candidate) || !is_not_found(error)) throw;
+      if (candidate_exists(candidate) || !is_not_found(error)) throw;
     }
   }
-  throw DeviceError(one_line(named.string() + ": is not found, nor any version of libdrd.so or " +
-                             "libdhd.so; " + kRemedy));
+  throw DeviceError(one_line(library.string() + ": not found, and no version of libdrd.so or " +
+                             "libdhd.so either; " + kRemedy));
 }
 
 Api load_api(const DynamicLibrary& library) {
@@ -168,30 +168,31 @@ Api load_api(const DynamicLibrary& library) {
 
 }  // namespace
 
-std::vector<fs::path> library_candidates(const fs::path& named) {
+std::vector<fs::path> library_candidates(const fs::path& library) {
   std::error_code error;
-  if (fs::is_directory(named, error)) return libraries_in(folders_of_kit(named));
-  if (named != kDefaultName) return {named};
+  if (fs::is_directory(library, error)) return libraries_in(sdk_folders(library));
+  if (library != kDefaultName) return {library};
   std::vector<fs::path> candidates;
   for (const std::string_view stem : kStems) {
     candidates.emplace_back(std::string(stem) + ".3");
     candidates.emplace_back(stem);
   }
-  for (fs::path& library : libraries_in(library_folders()))
-    candidates.push_back(std::move(library));
+  for (fs::path& file : libraries_in(library_folders())) candidates.push_back(std::move(file));
   return candidates;
 }
 
-Library::Library(const fs::path& named)
-    : file_(loadable(named)), library_(file_, Unload::never, kRemedy), api_(load_api(library_)) {}
+Library::Library(const fs::path& library)
+    : file_(find_loadable(library)),
+      library_(file_, Unload::never, kRemedy),
+      api_(load_api(library_)) {}
 
 int Library::device_count() const noexcept {
   return std::max(0, api_.get_device_count());
 }
 
 std::string Library::last_error() const {
-  const char* words = api_.error_get_last_str();
-  return words == nullptr ? "no reason given" : words;
+  const char* text = api_.error_get_last_str();
+  return text == nullptr ? "no reason given" : text;
 }
 
 }  // namespace touchtrial::device::dhd

@@ -1,6 +1,6 @@
-/// \file The part of Force Dimension's library that the driver uses, declared from its public
-///   documentation, so that the vendor's kit is not needed to build; and the search for the
-///   library. Private to this folder.
+/// \file Finds and loads Force Dimension's library. The functions that the driver uses are declared
+///   here from the public documentation, so that a build does not need the vendor's SDK. Private to
+///   this folder.
 #pragma once
 
 #include "device/platform/dynamic_library.hpp"
@@ -13,34 +13,34 @@
 
 namespace touchtrial::device::dhd {
 
-/// Most functions return a number below 0 for an error, 0 for success, or one of these, which are
-/// success too: the last values are younger than the time guard, so there was no exchange with the
-/// device; the motors exert less force than requested.
-constexpr int kTimeGuard = 1;
-constexpr int kMotorSaturated = 2;
+/// \name Results of most functions
+/// @{ A number below 0 is an error; 0 and these are success.
+constexpr int kTimeGuard = 1;       ///< no exchange: the last values are newer than the time guard
+constexpr int kMotorSaturated = 2;  ///< the motors exert less force than requested
+///@}
 
-/// The status array and its indices. Longer than any version's, so that a newer library does not
+/// The status array and its indices; larger than in any version, so that a newer library does not
 /// overflow it.
 using Status = std::array<int, 32>;
 constexpr std::size_t kConnected = 1;
 constexpr std::size_t kReset = 3;  ///< the device waits for its calibration
 constexpr std::size_t kForce = 5;  ///< force is switched on
 constexpr std::size_t kError = 9;
-constexpr std::size_t kForceOffCause = 14;  ///< of the last switch-off, however old
+constexpr std::size_t kForceOffCause = 14;  ///< of the last switch-off, even an old one
 
-/// Causes of switch-offs by the device itself; the others are due to a person (its button) or us.
+/// Causes of switch-offs by the device itself. Other causes are its button or the driver.
 constexpr int kOffByVelocity = 2;
 constexpr int kOffByWatchdog = 3;
 constexpr int kOffByUnplugging = 5;
 
 constexpr int kRecommendedTimeGuard = -1;
-/// The device switches force off without a command for this many times 125 us: 10 ms.
+/// The device switches force off after this many times 125 us (10 ms) without a command.
 constexpr unsigned char kWatchdog = 80;
-/// The number of joints in arrays of the library, for the largest device. The first three are the
-/// arms.
+/// The size of the library's joint arrays. The first three joints are the arms.
 constexpr std::size_t kJoints = 8;
 
-/// The functions, dhdGetDeviceCount as get_device_count and so on. The last argument is the device.
+/// The library's functions: get_device_count is dhdGetDeviceCount, and so on. The last argument is
+/// the device.
 struct Api {
   int (*get_device_count)();
   int (*open_id)(char);
@@ -76,7 +76,7 @@ struct Api {
   int (*delta_joint_angles_to_jacobian)(double, double, double, double (*)[3], char);
   ///@}
 
-  /// \name Only in libdrd, which has the others as well: drdOpenID as drd_open_id and so on
+  /// \name Only in libdrd, which also has the others: drd_open_id is drdOpenID, and so on
   ///@{
   int (*drd_open_id)(char);
   int (*drd_close)(char);
@@ -95,7 +95,7 @@ struct Api {
   return status[kReset] == 0 && (!api.has_drd() || api.drd_is_initialized(device));
 }
 
-/// Calls a function that versions with an expert mode refuse outside it. The mode is left at once,
+/// Calls a function that newer versions allow only in expert mode. The mode is left at once,
 /// because it allows functions that disable safety.
 template <typename Call>
 auto as_expert(const Api& api, Call call) noexcept(noexcept(call())) {
@@ -108,20 +108,19 @@ auto as_expert(const Api& api, Call call) noexcept(noexcept(call())) {
 /// The remedy for a library that cannot be used.
 extern const char* const kRemedy;
 
-/// \param named  the setting dhd.library: a file, the kit's folder or one with the library in it,
-///   or a bare name
+/// \param library  the setting dhd.library: a file, a folder of the SDK, or a bare name
 /// \return candidates, best first: libdrd before libdhd, which it contains, and newer before older
-///   versions. For the name libdhd.so, which the kit lacks, also the kit's names in the linker's
-///   path, the kit's folder (environment FDSDK), and the usual folders.
+///   versions. For the default libdhd.so, a name that the SDK does not use, also the SDK's names in
+///   the linker's path, the SDK's folder (environment FDSDK), and the usual folders.
 [[nodiscard]] std::vector<std::filesystem::path> library_candidates(
-    const std::filesystem::path& named);
+    const std::filesystem::path& library);
 
-/// The loaded library, without a device.
+/// The loaded library, with no device open.
 class Library {
  public:
-  /// Loads the first candidate that exists, after a trial in a child process.
-  /// \throws DeviceError with the remedy if none exists, or the first existing one cannot be used
-  explicit Library(const std::filesystem::path& named);
+  /// Loads the first candidate that exists, after a test in a child process.
+  /// \throws DeviceError with the remedy if none exists or it cannot be used
+  explicit Library(const std::filesystem::path& library);
 
   [[nodiscard]] const Api& api() const noexcept { return api_; }
   /// \return the loaded file

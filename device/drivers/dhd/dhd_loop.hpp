@@ -1,4 +1,4 @@
-/// \file The thread that talks to a Force Dimension device. Private to this folder.
+/// \file The thread that communicates with a Force Dimension device. Private to this folder.
 #pragma once
 
 #include "device/drivers/device_link.hpp"
@@ -16,28 +16,26 @@ namespace touchtrial::device::dhd {
 /// About the rate that the device's USB link allows.
 constexpr double kPollRateHz = 4000.0;
 
-/// Readings of the velocity's regression line: at 4 kHz its lag is 1 ms, and steps of 0.01 mm cause
-/// 1.5 mm/s of noise. The library's own velocity compares positions 20 ms apart, which lags by 10
-/// ms.
+/// Readings per velocity estimate: at 4 kHz the lag is 1 ms, and steps of 0.01 mm cause 1.5 mm/s of
+/// noise. The library's own velocity compares positions 20 ms apart, so it lags by 10 ms.
 constexpr std::size_t kVelocityReadings = 9;
 
-/// Polls the device from its construction to its destruction, in real time where the system permits
-/// it. Force is on only while the device is calibrated, and neither halted nor failed; at the end
-/// it sends zeros, then switches force off.
+/// Polls the device during its own lifetime, in real time if the system permits it. Force is on
+/// only while the device is calibrated and neither halted nor failed. The destructor sends zeros,
+/// then switches force off.
 ///
-/// A reading counts as new if the library exchanged data with the device since the previous one,
-/// for position or force: dhdSetForce fetches positions that dhdGetPosition then returns with the
-/// time guard's result. Changed values are no criterion, because a device at rest repeats them. A
-/// thread that waits for the device makes no reading.
+/// A reading is new if the library has exchanged data with the device since the previous one, for
+/// position or force: dhdSetForce fetches positions that dhdGetPosition then returns with the time
+/// guard's result. Values are not compared, because a device at rest repeats them.
 class Loop {
  public:
   using Time = std::chrono::nanoseconds;
   using Now = Time (*)();
 
   /// \param api  must outlive this
-  /// \param device  must stay open as long
-  /// \param max_weight_n  the largest weight that the library may add, else force is not switched
-  ///   on; nothing: it adds none
+  /// \param device  must stay open during the lifetime of this
+  /// \param max_weight_n  if the library adds a larger weight, force is not switched on; nothing if
+  ///   it adds none
   /// \param now  the time of a reading, for velocities
   Loop(const Api& api, char device, std::optional<double> max_weight_n, Now now);
   ~Loop();
@@ -53,15 +51,15 @@ class Loop {
   void run() noexcept;
   void tick() noexcept;
   void check_status() noexcept;
-  void note_force(bool is_on, int cause) noexcept;
-  [[nodiscard]] DeviceReadiness need() const noexcept;
-  void switch_force() noexcept;
+  void update_force_state(bool is_on, int cause) noexcept;
+  [[nodiscard]] DeviceReadiness required_action() const noexcept;
+  void update_force_switch() noexcept;
   void switch_off() noexcept;
   [[nodiscard]] bool is_weight_plausible() const noexcept;
-  void take_sample() noexcept;
+  void publish_sample() noexcept;
   void send(Vec3 force_n) noexcept;
-  void fail_call() noexcept;
-  [[nodiscard]] bool may_push() const noexcept { return force_on_ && calibrated_; }
+  void report_failed_call() noexcept;
+  [[nodiscard]] bool is_force_allowed() const noexcept { return is_force_on_ && is_calibrated_; }
 
   const Api& api_;
   char device_;
@@ -69,15 +67,15 @@ class Loop {
   Now now_;
   DeviceLink link_;
   VelocityEstimate<kVelocityReadings> velocity_;
-  bool calibrated_ = false;
-  bool switched_on_ = false;  ///< we requested force, and have not switched it off since
-  bool force_on_ = false;     ///< by the device's status
-  bool was_on_ = false;       ///< since our request
-  bool exchanged_ = true;     ///< data with the device since the last reading
-  bool saturated_ = false;    ///< motors, by the newest force
+  bool is_calibrated_ = false;
+  bool is_force_requested_ = false;  ///< by this driver, and not switched off since
+  bool is_force_on_ = false;         ///< by the device's status
+  bool was_force_on_ = false;        ///< since the request
+  bool has_exchanged_ = true;        ///< data was exchanged with the device since the last reading
+  bool is_saturated_ = false;        ///< the motors exert less than the newest force
   std::int64_t tick_ = 0;
-  std::int64_t switched_at_ = 0;
-  std::int64_t status_at_ = 0;  ///< when it is due next
+  std::int64_t requested_at_ = 0;
+  std::int64_t next_status_ = 0;  ///< the tick of the next status check
   std::atomic<DeviceReadiness> readiness_{DeviceReadiness::needs_calibration};
   std::atomic<bool> closing_{false};
   std::thread thread_;

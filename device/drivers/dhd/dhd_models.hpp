@@ -1,6 +1,6 @@
-/// \file Data that Force Dimension's library does not report: size, strength and greatest weight of
-/// a device, by its reported type. Sources: docs/devices/force-dimension.md; nothing was measured.
-/// Private to this folder.
+/// \file Data that Force Dimension's library does not report: a device's workspace, force and
+/// maximum weight, by its reported type. Sources: docs/devices/force-dimension.md; nothing was
+/// measured. Private to this folder.
 #pragma once
 
 #include "core/vec.hpp"
@@ -10,22 +10,22 @@
 
 namespace touchtrial::device::dhd {
 
-/// Numbers of 0 are unknown and must be set in the settings.
+/// A value of 0 is unknown.
 struct Model {
   const char* name;
-  /// Width, height and depth of the ellipsoid in the cylinder that the maker states: its axis
-  /// points towards the person.
+  /// Width, height and depth of the ellipsoid inscribed in the maker's cylinder, whose axis points
+  /// towards the person.
   Vec3 workspace_mm;
-  double force_n;  ///< peak, which the maker states as continuous
+  double force_n;  ///< peak; the maker states it as continuous
   double continuous_force_n;
-  /// Of a wall, by a public haptics library (CHAI3D): the manuals of omega and delta state 14.5
-  /// N/mm in closed loop, which no wall in a servo reaches.
+  /// The maximum for a wall, from CHAI3D, a public haptics library. The manuals of omega and delta
+  /// state 14.5 N/mm in closed loop, which no rendered wall reaches.
   double stiffness_n_per_mm;
-  /// An upper bound of the weight of arms and end-effector: 1.5 times the maximum of the maker's
-  /// library 3.17.5 for this model, or for the heaviest of its family.
+  /// An upper bound of the weight of arms and end-effector: 1.5 times the maximum in the maker's
+  /// library 3.17.5 for this model or the heaviest model of its family.
   double max_weight_n;
-  /// False: force cannot be switched off, so a zero must be exact and the library must not add a
-  /// weight.
+  /// Whether force can be switched off. If not, zero force must be exact, so the library must not
+  /// add a weight.
   bool has_switch = true;
 };
 
@@ -40,7 +40,7 @@ inline constexpr Model kSigma7 = {"sigma.7", {190, 190, 130}, 20, 20, 4, 22.5};
 inline constexpr Model kLambda3 = {"lambda.3", {}, 0, 0, 0, 27};
 inline constexpr Model kLambda6 = {"lambda.6", {}, 0, 0, 0, 27};
 inline constexpr Model kLambda7 = {"lambda.7", {240, 240, 170}, 20, 20, 8, 27};
-/// Novint's. Size and strength are those of the driver falcon.
+/// Made by Novint. Its workspace and force equal the driver falcon's.
 inline constexpr Model kFalcon = {"Falcon", {80, 80, 80}, 6.5, 2.1, 0, 0, false};
 
 struct ModelOfType {
@@ -48,7 +48,7 @@ struct ModelOfType {
   const Model* model;
 };
 
-/// The types of the maker's header, then types that only the open library assigns to these models.
+/// The types in the maker's header, then types that only CHAI3D assigns to these models.
 inline constexpr auto kModelsOfTypes = std::to_array<ModelOfType>({
     {33, &kOmega3},   {34, &kOmega6},   {36, &kOmega6},   {35, &kOmega7},   {37, &kOmega7},
     {63, &kDelta3},   {64, &kDelta6},   {206, &kSigma3},  {106, &kSigma6},  {107, &kSigma6},
@@ -62,8 +62,7 @@ inline constexpr auto kModelsOfTypes = std::to_array<ModelOfType>({
     {128, &kLambda7}, {129, &kLambda7}, {130, &kLambda7}, {210, &kLambda7}, {211, &kLambda7},
 });
 
-/// \return nothing for a type that is not in the table, for instance stand-alone controllers and
-///   custom devices
+/// \return the model; nothing for other types, for instance controllers and custom devices
 [[nodiscard]] constexpr std::optional<Model> model_of(int type) noexcept {
   for (const ModelOfType& entry : kModelsOfTypes) {
     if (entry.type == type) return *entry.model;

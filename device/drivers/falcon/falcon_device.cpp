@@ -11,15 +11,15 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr int kProbes = 5;
-/// At a latency of 1 ms the chip sends a packet every millisecond, usually an empty one.
+/// At a latency of 1 ms the chip sends a packet every millisecond, usually empty.
 constexpr int kPacketsPerProbe = 20;
 constexpr milliseconds kPacketLimit{20};
 
 /// Sends one packet.
 /// \return whether there was a reply before the time limit
-bool answers_once(FtdiTransport& transport) {
-  const Packet question = FalconExchange::zero_packet();
-  if (transport.send(question, kPacketLimit) != question.size()) return false;
+bool probe_once(FtdiTransport& transport) {
+  const Packet request = FalconExchange::zero_packet();
+  if (transport.send(request, kPacketLimit) != request.size()) return false;
   FalconStream stream;
   std::array<std::uint8_t, kUsbPacketSize> packet{};
   for (int i = 0; i < kPacketsPerProbe; ++i) {
@@ -30,19 +30,19 @@ bool answers_once(FtdiTransport& transport) {
   return false;
 }
 
-/// Starts the device, and loads its firmware if necessary.
-void make_run(FtdiTransport& transport, const FalconSettings& settings) {
+/// Starts the device and loads its firmware if necessary.
+void start_device(FtdiTransport& transport, const FalconSettings& settings) {
   set_up_running_falcon(transport);
-  if (falcon_answers(transport)) return;
+  if (probe_falcon(transport)) return;
   load_falcon_firmware(transport, read_falcon_firmware(settings.firmware));
-  if (falcon_answers(transport)) return;
-  throw DeviceError("falcon: its firmware is loaded, but it does not answer; " +
+  if (probe_falcon(transport)) return;
+  throw DeviceError("falcon: does not answer after its firmware was loaded; " +
                     one_line(settings.firmware.string()) +
                     " may not be a Falcon's firmware: correct falcon.firmware in the device "
                     "settings");
 }
 
-/// \return the fault of the firmware's file; empty if none
+/// \return why the firmware file cannot be used; empty if it can
 std::string firmware_fault(const FalconSettings& settings) {
   try {
     static_cast<void>(read_falcon_firmware(settings.firmware));
@@ -55,9 +55,9 @@ std::string firmware_fault(const FalconSettings& settings) {
 std::vector<DeviceListing> list_falcons(const DeviceSettings& settings) {
   std::vector<DeviceListing> listings;
   const std::string firmware = firmware_fault(settings.falcon);
-  for (const UsbFalcon& found : find_usb_falcons()) {
-    DeviceListing listing{"falcon", "Novint Falcon", found.serial, found.where, true, {}};
-    if (!found.trouble.empty()) listing.missing.push_back(found.trouble);
+  for (const UsbFalcon& falcon : find_usb_falcons()) {
+    DeviceListing listing{"falcon", "Novint Falcon", falcon.serial, falcon.where, true, {}};
+    if (!falcon.problem.empty()) listing.missing.push_back(falcon.problem);
     if (!firmware.empty()) listing.missing.push_back(firmware);
     listings.push_back(std::move(listing));
   }
@@ -79,9 +79,9 @@ std::unique_ptr<HapticDevice> open_falcon(const DeviceSettings& settings) {
 
 }  // namespace
 
-bool falcon_answers(FtdiTransport& transport) {
+bool probe_falcon(FtdiTransport& transport) {
   for (int i = 0; i < kProbes; ++i) {
-    if (answers_once(transport)) return true;
+    if (probe_once(transport)) return true;
   }
   return false;
 }
@@ -92,7 +92,7 @@ FalconDevice::FalconDevice(std::unique_ptr<FtdiTransport> transport, const Falco
       transport_(std::move(transport)),
       options_(std::move(options)),
       exchange_(settings, link_) {
-  make_run(*transport_, settings);
+  start_device(*transport_, settings);
   transport_->start_stream(exchange_);
   thread_ = std::thread([this] {
     scheduling_ = request_scheduling(options_.scheduling);
@@ -140,7 +140,7 @@ void FalconDevice::exchange_until_stopped() noexcept {
 }
 
 void FalconDevice::exchange() noexcept {
-  // Bytes received since the last exchange do not answer this one.
+  // Bytes received since the last exchange are not a reply to this one.
   transport_->serve(std::chrono::microseconds(0));
   exchange_.publish(options_.pace->now());
   // A refused command shows as a missing reply.
@@ -153,13 +153,13 @@ void FalconDevice::exchange() noexcept {
 
 void FalconDevice::wait_for_reply() noexcept {
   // The device answers in real time, even with a virtual clock.
-  const FalconPace::Time until = monotonic_now() + kReplyLimit;
+  const FalconPace::Time deadline = monotonic_now() + kReplyLimit;
   do {
     transport_->serve(std::chrono::duration_cast<std::chrono::microseconds>(kReplyLimit));
     exchange_.publish(options_.pace->now());
     if (exchange_.is_answered() || transport_->lost()) return;
-  } while (monotonic_now() < until);
-  options_.pace->waited(kReplyLimit);
+  } while (monotonic_now() < deadline);
+  options_.pace->on_wait(kReplyLimit);
 }
 
 void FalconDevice::send_final_zeros() noexcept {
@@ -169,7 +169,7 @@ void FalconDevice::send_final_zeros() noexcept {
       static_cast<void>(transport_->send(FalconExchange::zero_packet(), kFinalLimit));
     }
   } catch (const DeviceError&) {
-    // The device was disconnected, so no final packets are sent.
+    // The device was disconnected, so it cannot receive zeros.
   }
 }
 
@@ -187,23 +187,26 @@ DeviceDriver falcon_driver() {
       .nominal_workspace = falcon::kFalconWorkspace,
       .products = {{"falcon", "Novint Falcon", "falcon"}},
       .unverified = {
-          {"signs", "which way positions and forces run on each axis"},
-          {"lengths", "legs and degrees a count: the sources differ by 1.2 to 1.5 in lengths"},
+          {"signs", "the signs of positions and forces on each axis"},
+          {"lengths",
+           "the legs' lengths and degrees per count: lengths in the sources differ by factors of "
+           "1.2 to 1.5"},
           {"zero_angle",
-           "the legs' angle at count 0 (32.99 or 35 degrees), which shifts the middle of the "
-           "reach"},
-          {"force_scale", "motor values for 1 N m: 6,616, or 3,728, or 10,000"},
-          {"homing", "whether firmware loads and the axes home as the driver does it"},
+           "the legs' angle at count 0 (32.99 or 35 degrees), which shifts the centre of the "
+           "workspace"},
+          {"force_scale", "the motor value for 1 N m: 6,616, 3,728 or 10,000"},
+          {"homing", "whether the driver's procedures load the firmware and home the axes"},
           {"lights",
            "which bit is which light",
            "Which light was on before the grip was homed?",
            {"red", "green", "blue", "none"}},
-          {"program_silent", "what the firmware does with the motors when the host falls silent"},
-          {"cable_silent", "what the firmware does with the motors when the USB cable is pulled"},
-          {"replies", "how late replies come on this port"},
-          {"beyond_peak", "what the firmware does with motor values beyond 4,095"},
+          {"program_silent", "the motors' state after the host stops sending commands"},
+          {"cable_silent", "the motors' state after the USB cable is pulled"},
+          {"replies", "the latency of replies on this port"},
+          {"beyond_peak", "the firmware's response to motor values beyond 4,095"},
           {"warm_motors",
-           "how long motors hold which torque, and how warm they get (device accept --thermal)"}}};
+           "how long the motors can exert a torque, and how warm they get (device accept "
+           "--thermal)"}}};
 }
 
 }  // namespace touchtrial::device

@@ -17,7 +17,7 @@
 
 namespace touchtrial::device::falcon {
 
-/// The sphere that every Falcon reaches.
+/// A sphere within the reach of every Falcon.
 inline constexpr Workspace kFalconWorkspace = {
     {-kWorkspaceRadiusMm, -kWorkspaceRadiusMm, -kWorkspaceRadiusMm},
     {kWorkspaceRadiusMm, kWorkspaceRadiusMm, kWorkspaceRadiusMm},
@@ -28,25 +28,26 @@ using FalconPace = LinkPace;
 
 struct FalconOptions {
   std::unique_ptr<FalconPace> pace = std::make_unique<RealLinkPace>();
-  /// Of the USB thread: its priority is a little above that of the servo, which needs its samples.
+  /// The USB thread has a slightly higher priority than the servo, which needs its samples.
   SchedulingRequest scheduling{SchedulingPolicy::fifo, 81, true};
 };
 
 /// Exchanges one packet each way at up to 1 kHz on a separate thread. Sends no force before all
-/// three axes are homed. The gravity bias is its support.
+/// three axes are homed. Its support force is the gravity bias in the settings.
 class FalconDevice final : public LinkedDevice {
  public:
-  /// The shortest time from one exchange to the next: the device manages about 1 kHz.
+  /// The minimum time from one exchange to the next, because the device supports about 1 kHz.
   static constexpr FalconPace::Time kPeriod = std::chrono::milliseconds(1);
-  /// The time limit for a reply, after which the next command is sent. A frame of the bus each way,
-  /// the chip's latency of 1 ms and 0.1 ms for the bytes each way make 3.2 ms at the very most; so
-  /// two lost replies in a row cost less than the safety chain's 10 ms without a reading.
+  /// The time limit for a reply, after which the next command is sent. Two bus frames, the chip's
+  /// latency of 1 ms and 0.1 ms of transfer each way add up to at most 3.2 ms. With this limit, two
+  /// lost replies in a row take less than the safety chain's 10 ms without a reading.
   static constexpr FalconPace::Time kReplyLimit = std::chrono::milliseconds(3);
-  /// Packets without force before the device is closed, and the time for each.
+  /// Zero-force packets sent before the device is closed.
   static constexpr int kFinalPackets = 5;
+  /// The time limit for each of them.
   static constexpr std::chrono::milliseconds kFinalLimit{20};
 
-  /// Loads the firmware unless the device answers already; returns once exchanges have begun.
+  /// Loads the firmware unless it is already running; returns once exchanges have begun.
   /// \throws DeviceError or FileError with the remedy
   FalconDevice(std::unique_ptr<FtdiTransport> transport, const FalconSettings& settings,
                FalconOptions options = {});
@@ -79,13 +80,13 @@ class FalconDevice final : public LinkedDevice {
   std::atomic<bool> homed_{false};
   std::atomic<bool> stopping_{false};
   SchedulingObtained scheduling_;
-  std::latch started_{1};  ///< until its scheduling is known
+  std::latch started_{1};  ///< open once `scheduling_` is set
   std::thread thread_;
 };
 
-/// Moves nothing.
+/// Sends zero force.
 /// \return whether loaded firmware answers
 /// \throws DeviceError if the device was disconnected
-[[nodiscard]] bool falcon_answers(FtdiTransport& transport);
+[[nodiscard]] bool probe_falcon(FtdiTransport& transport);
 
 }  // namespace touchtrial::device::falcon

@@ -27,12 +27,12 @@ constexpr std::uint16_t kBaudRunning = 0x02;
 constexpr std::uint16_t kLoadingLatencyMs = 16;
 constexpr std::uint16_t kRunningLatencyMs = 1;
 
-// The loader's two commands, and its answers.
+// The loader's two commands, and its answer to the first.
 constexpr std::array<std::uint8_t, 3> kHello = {0x0a, 0x43, 0x0d};
 constexpr std::array<std::uint8_t, 4> kHelloAnswer = {0x0a, 0x44, 0x2c, 0x0d};
 constexpr std::array<std::uint8_t, 1> kStart = {0x41};
 
-/// A packet's payload, so that a block and its echo fit into one packet each.
+/// The payload of one packet, so that a block and its echo fit into one packet each.
 constexpr std::size_t kBlockBytes = kUsbPacketSize - kFtdiStatusSize;
 
 constexpr milliseconds kSendLimit{200};
@@ -47,7 +47,7 @@ void purge(FtdiTransport& transport) {
 }
 
 /// Appends the payload of the next packet.
-/// \return whether it had any
+/// \return whether it had a payload
 bool receive_more(FtdiTransport& transport, Bytes& bytes) {
   std::array<std::uint8_t, kUsbPacketSize> packet{};
   const std::size_t length = transport.receive(packet, kBootPacketLimit);
@@ -65,8 +65,9 @@ Bytes receive_bytes(FtdiTransport& transport, std::size_t count) {
   return bytes;
 }
 
-/// \return whether the answer was received, possibly after other bytes, such as a leading zero
-bool answers(FtdiTransport& transport, std::span<const std::uint8_t> expected) {
+/// Waits for an answer, possibly preceded by other bytes, for instance a zero.
+/// \return whether it was received
+bool receive_answer(FtdiTransport& transport, std::span<const std::uint8_t> expected) {
   Bytes bytes;
   for (int idle = 0; idle < kTimeoutPackets && bytes.size() < kUsbPacketSize;) {
     idle = receive_more(transport, bytes) ? 0 : idle + 1;
@@ -76,9 +77,9 @@ bool answers(FtdiTransport& transport, std::span<const std::uint8_t> expected) {
   return false;
 }
 
-bool says(FtdiTransport& transport, std::span<const std::uint8_t> word,
-          std::span<const std::uint8_t> answer) {
-  return transport.send(word, kSendLimit) == word.size() && answers(transport, answer);
+bool exchange_word(FtdiTransport& transport, std::span<const std::uint8_t> word,
+                   std::span<const std::uint8_t> answer) {
+  return transport.send(word, kSendLimit) == word.size() && receive_answer(transport, answer);
 }
 
 void reset_into_loader(FtdiTransport& transport) {
@@ -92,25 +93,25 @@ void reset_into_loader(FtdiTransport& transport) {
   transport.control(FtdiRequest::modem_control, kTerminalReadyHigh);
 }
 
-bool shakes_hands(FtdiTransport& transport) {
+bool reach_loader(FtdiTransport& transport) {
   for (int attempt = 0; attempt < kFirmwareHandshakes; ++attempt) {
-    if (says(transport, kHello, kHelloAnswer)) return true;
+    if (exchange_word(transport, kHello, kHelloAnswer)) return true;
   }
   return false;
 }
 
-bool starts_loading(FtdiTransport& transport) {
+bool start_loader(FtdiTransport& transport) {
   transport.control(FtdiRequest::modem_control, kTerminalReadyLow);
   transport.control(FtdiRequest::baud_divisor, kBaud140k);
-  return says(transport, kStart, kStart);
+  return exchange_word(transport, kStart, kStart);
 }
 
 /// \return the first byte at which the echo differs; the image's size if none does
 std::size_t send_image(FtdiTransport& transport, std::span<const std::uint8_t> image) {
-  for (std::size_t at = 0; at < image.size(); at += kBlockBytes) {
-    const auto block = image.subspan(at, std::min(kBlockBytes, image.size() - at));
-    if (transport.send(block, kSendLimit) != block.size()) return at;
-    if (!std::ranges::equal(block, receive_bytes(transport, block.size()))) return at;
+  for (std::size_t offset = 0; offset < image.size(); offset += kBlockBytes) {
+    const auto block = image.subspan(offset, std::min(kBlockBytes, image.size() - offset));
+    if (transport.send(block, kSendLimit) != block.size()) return offset;
+    if (!std::ranges::equal(block, receive_bytes(transport, block.size()))) return offset;
   }
   return image.size();
 }
@@ -119,11 +120,11 @@ std::size_t send_image(FtdiTransport& transport, std::span<const std::uint8_t> i
 /// \return the failure; empty on success
 std::string try_load(FtdiTransport& transport, std::span<const std::uint8_t> image) {
   reset_into_loader(transport);
-  if (!shakes_hands(transport)) return "its loader does not answer";
-  if (!starts_loading(transport)) return "its loader does not start";
-  const std::size_t sent = send_image(transport, image);
-  if (sent == image.size()) return {};
-  return "its echo is wrong or missing from byte " + std::to_string(sent) + " on";
+  if (!reach_loader(transport)) return "its loader does not answer";
+  if (!start_loader(transport)) return "its loader does not start";
+  const std::size_t echoed = send_image(transport, image);
+  if (echoed == image.size()) return {};
+  return "its echo is wrong or missing from byte " + std::to_string(echoed) + " on";
 }
 
 }  // namespace
@@ -131,7 +132,7 @@ std::string try_load(FtdiTransport& transport, std::span<const std::uint8_t> ima
 std::vector<std::uint8_t> read_falcon_firmware(const std::filesystem::path& file) {
   if (file.empty()) {
     throw FileError(
-        "falcon: it needs the vendor's firmware and no file is named; set falcon.firmware in the "
+        "falcon: needs the vendor's firmware, but no file is named; set falcon.firmware in the "
         "device settings (docs/devices/falcon.md)");
   }
   std::ifstream stream(file, std::ios::binary);
@@ -157,7 +158,7 @@ void load_falcon_firmware(FtdiTransport& transport, std::span<const std::uint8_t
     if (failure.empty()) return set_up_running_falcon(transport);
   }
   throw DeviceError("falcon: its firmware could not be loaded in " +
-                    std::to_string(kFirmwareLoads) + " tries: " + failure +
+                    std::to_string(kFirmwareLoads) + " attempts: " + failure +
                     "; unplug USB and power, wait ten seconds, plug both in and try again");
 }
 

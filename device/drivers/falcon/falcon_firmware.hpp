@@ -1,5 +1,5 @@
-/// \file Loads the vendor's firmware into a Falcon, which loses it without power. The user provides
-/// the image: this program contains none.
+/// \file Loads the vendor's firmware into a Falcon, which needs it after every power-up. The user
+/// provides the image; this program does not contain it.
 #pragma once
 
 #include "device/drivers/falcon/ftdi_transport.hpp"
@@ -15,11 +15,11 @@ namespace touchtrial::device::falcon {
 constexpr std::size_t kMinFirmwareBytes = 4'096;
 constexpr std::size_t kMaxFirmwareBytes = 16'384;
 
-/// \throws FileError with the remedy if no file is named, it cannot be read, or its size is not
-///   that of an image
+/// \throws FileError with the remedy if no file is named, it cannot be read, or its size is out of
+///   range
 [[nodiscard]] std::vector<std::uint8_t> read_falcon_firmware(const std::filesystem::path& file);
 
-/// Attempts before giving up: loading is known to fail now and then.
+/// Attempts before giving up, because loading is known to fail occasionally.
 constexpr int kFirmwareLoads = 10;
 constexpr int kFirmwareHandshakes = 100;
 

@@ -1,16 +1,16 @@
 /// \file Geometry of the Novint Falcon: joint angles to hand position, force to motor torques.
 ///
-/// Three equal legs stand around the device's axis. In the plane of a leg an arm turns by theta1
-/// (its motor); a parallelogram, which yields to either side, leads from the arm's end to the grip.
-/// The grip does not turn, so three spheres around the arms' ends, each moved by the leg's offset,
-/// meet in it. Source: R. Clavel, "Delta, a fast robot with parallel geometry", ISIR 1988. Lengths
-/// and angles were read from Force Dimension's library 3.17.5, which can drive a Falcon
-/// (docs/devices/falcon.md). Not verified on hardware.
+/// Three equal legs are arranged around the device's axis. In the plane of a leg, the motor rotates
+/// an arm by theta1; a parallelogram, which can swing sideways, connects the arm's end to the grip.
+/// The grip does not rotate, so it is at the intersection of three spheres around the arms' ends,
+/// each shifted by the leg's offset. Source: R. Clavel, "Delta, a fast robot with parallel
+/// geometry", ISIR 1988. Lengths and angles were read from Force Dimension's library 3.17.5, which
+/// can drive a Falcon (docs/devices/falcon.md). Not verified on hardware.
 ///
-/// Two frames. Native, m: z along the device's axis towards the person, measured from the arms'
-/// axes. Device, mm: the frame of HapticDevice. Only `to_device_mm` knows both.
+/// Frames: native, m, with z along the device's axis towards the person, measured from the arms'
+/// axes; and device, mm, as in HapticDevice. `to_device_mm` converts.
 ///
-/// Everything here is a pure function: any thread, no heap, no throw, constant time.
+/// All functions are pure: any thread, no allocation or exception, constant time.
 #pragma once
 
 #include "core/vec.hpp"
@@ -38,7 +38,8 @@ inline constexpr double kWorkspaceRadiusMm = 40.0;
 ///@{
 inline constexpr double kArmM = 0.060;
 inline constexpr double kParallelogramM = 0.150;
-/// From the device's axis to an arm's axis, less that from the grip's middle to its joint.
+/// The distance from the device's axis to an arm's axis, minus that from the grip's centre to its
+/// joint.
 inline constexpr double kOffsetM = 0.022;
 
 inline constexpr double kRadPerDeg = std::numbers::pi / 180.0;
@@ -60,15 +61,15 @@ struct LegPoint {
   double along_m;   ///< along the device's axis
 };
 
-[[nodiscard]] inline LegPoint seen_by_leg(Vec3 native_m, const LegDirection& leg) noexcept {
+[[nodiscard]] inline LegPoint to_leg_frame(Vec3 native_m, const LegDirection& leg) noexcept {
   return {native_m.x * leg.cosine + native_m.y * leg.sine - kOffsetM,
           -native_m.x * leg.sine + native_m.y * leg.cosine, native_m.z};
 }
 
-/// A direction of a leg's frame (across, side, along) in native axes.
-[[nodiscard]] inline Vec3 to_native_axes(Vec3 in_leg, const LegDirection& leg) noexcept {
-  return {in_leg.x * leg.cosine - in_leg.y * leg.sine, in_leg.x * leg.sine + in_leg.y * leg.cosine,
-          in_leg.z};
+/// \param direction  in a leg's frame: across, side, along
+[[nodiscard]] inline Vec3 to_native_axes(Vec3 direction, const LegDirection& leg) noexcept {
+  return {direction.x * leg.cosine - direction.y * leg.sine,
+          direction.x * leg.sine + direction.y * leg.cosine, direction.z};
 }
 ///@}
 
@@ -76,22 +77,21 @@ struct LegPoint {
 [[nodiscard]] double theta1_of_count(std::int16_t count) noexcept;
 [[nodiscard]] PerLeg theta1_of_counts(const EncoderCounts& counts) noexcept;
 
-/// The action of the legs on the hand at one pose: d theta1_i / d position = pull_i / lever_i, in
-/// rad/m.
+/// The Jacobian of the legs' angles at one pose: d theta1_i / d position = pull_i / lever_i, rad/m.
 struct LegJacobian {
   std::array<Vec3, 3> pull;  ///< of length 1, native axes
   PerLeg lever_m{};          ///< 0 where an arm and its parallelogram are in line
 };
 
-/// Motor torques that make the hand feel a force: J^T F with J = d position / d theta1.
 /// \param force_n  on the hand; native and device axes are parallel
-/// \return N m; nothing if the legs cannot hold that pose (singular), or a number is not finite
+/// \return the motor torques that exert the force, N m: J^T F with J = d position / d theta1; nothing
+///   in a singular pose, or if a number is not finite
 [[nodiscard]] std::optional<PerLeg> torques_nm(const LegJacobian& jacobian, Vec3 force_n) noexcept;
 
 enum class PoseStatus {
   ok,
-  out_of_reach,  ///< no position has these angles, so they are not a valid reading
-  singular,      ///< the position exists, but no torques give a force there
+  out_of_reach,  ///< no position has these angles, so the reading is invalid
+  singular,      ///< the position exists, but torques cannot produce every force there
 };
 
 struct Pose {
@@ -100,7 +100,7 @@ struct Pose {
   LegJacobian jacobian;      ///< at that position
 };
 
-/// Forward kinematics: the point in which the legs' three spheres meet on the person's side.
+/// Finds the position at which the legs' three spheres intersect, on the person's side.
 [[nodiscard]] Pose forward_kinematics(const PerLeg& theta1_rad) noexcept;
 
 }  // namespace touchtrial::device::falcon

@@ -17,34 +17,34 @@ ThermalBudget budget_of(const FalconSettings& settings) noexcept {
 }  // namespace
 
 FalconMotors::FalconMotors(const FalconSettings& settings) noexcept
-    : max_n_(settings.motor_peak),
+    : max_value_(settings.motor_peak),
       budgets_{budget_of(settings), budget_of(settings), budget_of(settings)} {}
 
-void FalconMotors::warm_until(Time now) noexcept {
-  if (begun_) {
+void FalconMotors::add_heat_until(Time now) noexcept {
+  if (has_sent_) {
     const double ticks = std::chrono::duration<double>(now - sent_at_).count() / kHeatTickS;
     for (std::size_t i = 0; i < 3; ++i) {
       const double value = sent_[i];
       budgets_[i].heat(value * value, std::max(ticks, 0.0));
     }
   }
-  begun_ = true;
+  has_sent_ = true;
   sent_at_ = now;
 }
 
 MotorCommand FalconMotors::command(const PerLeg& torques_nm, Time now) noexcept {
-  warm_until(now);
+  add_heat_until(now);
   sent_ = {};
   double scale = 1.0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const double wanted = std::abs(kMotorValuePerNm * torques_nm[i]);
-    if (!std::isfinite(wanted)) return {};
-    const double max = std::min(max_n_, budgets_[i].limit_n());
-    if (wanted > max) scale = std::min(scale, max / wanted);
+    const double requested = std::abs(kMotorValuePerNm * torques_nm[i]);
+    if (!std::isfinite(requested)) return {};
+    const double max = std::min(max_value_, budgets_[i].limit_n());
+    if (requested > max) scale = std::min(scale, max / requested);
   }
   for (std::size_t i = 0; i < 3; ++i) {
     const double value = std::round(scale * (kMotorValuePerNm * torques_nm[i]));
-    sent_[i] = static_cast<std::int16_t>(std::clamp(value, -max_n_, max_n_));
+    sent_[i] = static_cast<std::int16_t>(std::clamp(value, -max_value_, max_value_));
   }
   return {sent_, scale < 1.0};
 }

@@ -1,10 +1,10 @@
 /// \file Converts torques to a Falcon's motor values, within each motor's range and thermal limit.
 ///
-/// A force may load a single motor, so the safety chain's limits of the force's norm do not protect
-/// a motor. Here each motor has its own limit. A limit scales all three motors by one factor, which
-/// preserves the force's direction.
+/// A force may load a single motor, so the safety chain's limit of the force's norm does not
+/// protect a motor; here each motor has its own limit. A limit scales all three motors by the same
+/// factor, which preserves the force's direction.
 ///
-/// Belongs to the driver's own thread; nothing here allocates, locks or throws.
+/// Belongs to the driver's thread; nothing here allocates, locks or throws.
 #pragma once
 
 #include "device/device_settings.hpp"
@@ -19,17 +19,17 @@ namespace touchtrial::device::falcon {
 
 /// The motor value of a torque, N m, at an arm. Source: S. Martin and N. Hillier, "Characterisation
 /// of the Novint Falcon haptic device for application as a robot manipulator", ACRA 2009. Other
-/// programs use other numbers (docs/devices/falcon.md). Not verified on hardware.
+/// programs use other values (docs/devices/falcon.md). Not verified on hardware.
 inline constexpr double kMotorValuePerNm = -6616.0;
 
-/// The minimum force of one unit of motor value, over all positions of the workspace and all
-/// directions, N. The least is at its edge; at the centre it is 1.85 mN.
+/// The minimum force per motor value over the workspace and all directions, N. It occurs at the
+/// edge of the workspace; at the centre the force is 1.85 mN.
 inline constexpr double kForcePerMotorValueN = 1.59e-3;
 
-/// The command to the motors.
+/// A command to the motors.
 struct MotorCommand {
   MotorValues values{};
-  bool limited = false;  ///< less than the requested torques
+  bool limited = false;  ///< whether the values are below the requested torques
 };
 
 class FalconMotors {
@@ -38,19 +38,19 @@ class FalconMotors {
 
   explicit FalconMotors(const FalconSettings& settings) noexcept;
 
-  /// Begins a command; the previous one counts as sent until now.
-  /// \param now  never earlier than in the last call
+  /// Begins a command. The previous one is assumed to have been active until now.
+  /// \param now  not earlier than in the last call
   /// \return values within every limit; zeros, not limited, if a torque is not finite
   [[nodiscard]] MotorCommand command(const PerLeg& torques_nm, Time now) noexcept;
 
  private:
-  void warm_until(Time now) noexcept;
+  void add_heat_until(Time now) noexcept;
 
-  double max_n_;
+  double max_value_;
   std::array<ThermalBudget, 3> budgets_;
   MotorValues sent_{};
   Time sent_at_{};
-  bool begun_ = false;
+  bool has_sent_ = false;
 };
 
 }  // namespace touchtrial::device::falcon

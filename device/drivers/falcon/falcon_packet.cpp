@@ -13,7 +13,7 @@ constexpr std::size_t kUnusedAt = 14;
 constexpr std::size_t kLastAt = kPacketSize - 1;
 constexpr std::size_t kNibbles = 4;
 
-void put_nibbles(Packet& packet, std::size_t axis, std::int16_t value) noexcept {
+void write_nibbles(Packet& packet, std::size_t axis, std::int16_t value) noexcept {
   const auto bits = static_cast<std::uint16_t>(value);
   for (std::size_t i = 0; i < kNibbles; ++i) {
     packet[1 + kNibbles * axis + i] =
@@ -21,7 +21,7 @@ void put_nibbles(Packet& packet, std::size_t axis, std::int16_t value) noexcept 
   }
 }
 
-std::int16_t take_nibbles(std::span<const std::uint8_t, kPacketSize> packet,
+std::int16_t read_nibbles(std::span<const std::uint8_t, kPacketSize> packet,
                           std::size_t axis) noexcept {
   unsigned bits = 0;
   for (std::size_t i = 0; i < kNibbles; ++i) {
@@ -31,21 +31,21 @@ std::int16_t take_nibbles(std::span<const std::uint8_t, kPacketSize> packet,
 }
 
 /// \return whether a byte is valid at this position of a reply
-bool fits_reply(std::uint8_t byte, std::size_t at) noexcept {
-  if (at == 0) return byte == kFirst;
-  if (at < kFlagsAt) return byte >= kZero && byte <= kZero + 0xF;
-  if (at == kFlagsAt) return byte >= kZero;
-  if (at == kUnusedAt) return byte != kFirst && byte != kLast;
+bool is_valid_in_reply(std::uint8_t byte, std::size_t position) noexcept {
+  if (position == 0) return byte == kFirst;
+  if (position < kFlagsAt) return byte >= kZero && byte <= kZero + 0xF;
+  if (position == kFlagsAt) return byte >= kZero;
+  if (position == kUnusedAt) return byte != kFirst && byte != kLast;
   return byte == kLast;
 }
 
 }  // namespace
 
 std::uint8_t led_bits(const Lights& lights, const std::array<int, 3>& order) noexcept {
-  const std::array<bool, 3> on = {lights.red, lights.green, lights.blue};
+  const std::array<bool, 3> is_on = {lights.red, lights.green, lights.blue};
   unsigned bits = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    if (on[i] && order[i] >= 0 && order[i] <= 2) bits |= 1U << static_cast<unsigned>(order[i]);
+    if (is_on[i] && order[i] >= 0 && order[i] <= 2) bits |= 1U << static_cast<unsigned>(order[i]);
   }
   return static_cast<std::uint8_t>(bits);
 }
@@ -54,7 +54,7 @@ Packet encode_command(const Command& command) noexcept {
   Packet packet;
   packet.fill(kZero);
   packet[0] = kFirst;
-  for (std::size_t axis = 0; axis < 3; ++axis) put_nibbles(packet, axis, command.motors[axis]);
+  for (std::size_t axis = 0; axis < 3; ++axis) write_nibbles(packet, axis, command.motors[axis]);
   const unsigned flags = (command.homing ? 1U : 0U) | (command.leds & 7U) << 1U;
   packet[kFlagsAt] = static_cast<std::uint8_t>(kZero + flags);
   packet[kLastAt] = kLast;
@@ -62,11 +62,11 @@ Packet encode_command(const Command& command) noexcept {
 }
 
 std::optional<Reply> decode_reply(std::span<const std::uint8_t, kPacketSize> packet) noexcept {
-  for (std::size_t at = 0; at < kPacketSize; ++at) {
-    if (!fits_reply(packet[at], at)) return std::nullopt;
+  for (std::size_t i = 0; i < kPacketSize; ++i) {
+    if (!is_valid_in_reply(packet[i], i)) return std::nullopt;
   }
   Reply reply;
-  for (std::size_t axis = 0; axis < 3; ++axis) reply.counts[axis] = take_nibbles(packet, axis);
+  for (std::size_t axis = 0; axis < 3; ++axis) reply.counts[axis] = read_nibbles(packet, axis);
   const unsigned flags = packet[kFlagsAt] - unsigned{kZero};
   reply.buttons = flags & 0xFU;
   for (std::size_t axis = 0; axis < 3; ++axis) reply.homed[axis] = (flags >> (4 + axis) & 1U) != 0;
@@ -74,15 +74,15 @@ std::optional<Reply> decode_reply(std::span<const std::uint8_t, kPacketSize> pac
 }
 
 int FalconStream::push_transfer(std::span<const std::uint8_t> transfer) noexcept {
-  int finished = 0;
+  int completed = 0;
   while (!transfer.empty()) {
     const auto usb_packet = transfer.first(std::min(transfer.size(), kUsbPacketSize));
     for (std::size_t i = kFtdiStatusSize; i < usb_packet.size(); ++i) {
-      if (push_byte(usb_packet[i])) ++finished;
+      if (push_byte(usb_packet[i])) ++completed;
     }
     transfer = transfer.subspan(usb_packet.size());
   }
-  return finished;
+  return completed;
 }
 
 void FalconStream::restart() noexcept {
@@ -100,8 +100,8 @@ void FalconStream::start_packet_at(std::uint8_t byte) noexcept {
 }
 
 bool FalconStream::push_byte(std::uint8_t byte) noexcept {
-  // Only a packet's first byte can start a packet, so no byte has to be read twice.
-  if (!fits_reply(byte, size_)) {
+  // Only '<' can start a packet, and it occurs nowhere else, so no discarded byte starts a packet.
+  if (!is_valid_in_reply(byte, size_)) {
     start_packet_at(byte);
     return false;
   }

@@ -1,9 +1,9 @@
-/// \file The 16 bytes of a command to a running Falcon, and the 16 of its reply.
+/// \file Packets of a running Falcon: a command of 16 bytes, and a reply of 16 bytes.
 ///
-/// '<', three int16 as four nibbles each (least significant first, plus 0x41), a byte of flags plus
-/// 0x41, an unused byte, '>'. A command has motor values, and flags for homing and three LEDs. A
-/// reply has encoder counts, and flags for four buttons and three homed axes. Source: the open
-/// drivers. Not verified on hardware.
+/// Format: '<', three int16 as four nibbles each (least significant first, plus 0x41), a byte of
+/// flags plus 0x41, an unused byte, '>'. A command contains motor values, and flags for homing and
+/// three LEDs. A reply contains encoder counts, and flags for four buttons and three homed axes.
+/// Source: open-source drivers. Not verified on hardware.
 ///
 /// Nothing here allocates or throws. Any thread may call the pure functions; a FalconStream belongs
 /// to one thread.
@@ -40,7 +40,7 @@ struct Lights {
 struct Command {
   MotorValues motors{};
   std::uint8_t leds = 0;  ///< from `led_bits`
-  bool homing = true;     ///< allows axes to home when a person moves them; always on
+  bool homing = true;     ///< lets axes home when a person moves them; always on
 };
 
 [[nodiscard]] Packet encode_command(const Command& command) noexcept;
@@ -63,29 +63,29 @@ struct Reply {
   [[nodiscard]] bool all_homed() const noexcept { return homed[0] && homed[1] && homed[2]; }
 };
 
-/// \return nothing unless both marks and all twelve nibbles are valid
+/// \return the reply; nothing if a byte is invalid
 [[nodiscard]] std::optional<Reply> decode_reply(
     std::span<const std::uint8_t, kPacketSize> packet) noexcept;
 ///@}
 
-/// A bulk transfer from the FTDI chip is USB packets of 64 bytes, of which the last may be shorter.
+/// A bulk transfer from the FTDI chip consists of USB packets of 64 bytes; the last may be shorter.
 inline constexpr std::size_t kUsbPacketSize = 64;
-inline constexpr std::size_t kFtdiStatusSize = 2;  ///< at the front of every USB packet from it
+inline constexpr std::size_t kFtdiStatusSize = 2;  ///< at the beginning of each of these packets
 
-/// Finds replies in the byte stream from a Falcon, even after lost bytes. Keeps at most one
-/// unfinished packet.
+/// Finds replies in the byte stream from a Falcon, even after lost bytes. Stores at most one
+/// incomplete packet.
 class FalconStream {
  public:
-  /// Reads one bulk transfer, with the FTDI's status bytes.
+  /// Reads one bulk transfer, including the chip's status bytes.
   /// \return the number of completed replies; `newest` is the last of them
   int push_transfer(std::span<const std::uint8_t> transfer) noexcept;
 
   /// \return the last reply; a default one before the first
   [[nodiscard]] const Reply& newest() const noexcept { return newest_; }
   [[nodiscard]] std::uint64_t replies() const noexcept { return replies_; }
-  /// \return the number of bytes outside of replies, a measure of link quality
+  /// \return the number of bytes outside replies, a measure of link quality
   [[nodiscard]] std::uint64_t discarded_bytes() const noexcept { return discarded_; }
-  /// Discards the unfinished packet, after a purge of the chip's buffers. Counters are unchanged.
+  /// Discards an incomplete packet, after a purge of the chip's buffers.
   void restart() noexcept;
 
  private:

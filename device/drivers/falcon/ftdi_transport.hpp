@@ -1,5 +1,5 @@
-/// \file The Falcon driver's interface to the FTDI chip in the device: libusb in the product
-/// (usb_falcon.hpp), an emulator in the tests.
+/// \file The Falcon driver's interface to the device's FTDI chip, implemented by libusb
+/// (usb_falcon.hpp) and by an emulator in the tests.
 #pragma once
 
 #include "device/drivers/falcon/falcon_packet.hpp"
@@ -27,30 +27,30 @@ enum class FtdiRequest : std::uint8_t {
 class FtdiStreamSink {
  public:
   virtual ~FtdiStreamSink() = default;
-  /// \param transfer  the bytes of one bulk transfer, with the chip's status bytes; may be empty
+  /// \param transfer  one bulk transfer, including the chip's status bytes; may be empty
   virtual void receive(std::span<const std::uint8_t> transfer) noexcept = 0;
-  /// A posted packet was sent.
+  /// Called when a posted packet was sent.
   virtual void sent() noexcept {}
 };
 
 /// An open, claimed chip; the destructor closes it. Belongs to one thread at a time. It has two
-/// separate modes: single transfers, which wait and throw, for setup; and the stream, with one read
-/// always queued, which neither waits nor throws.
+/// separate modes: single transfers for setup, which block and throw; and a stream with one read
+/// always queued, which neither blocks nor throws.
 class FtdiTransport {
  public:
   virtual ~FtdiTransport() = default;
 
-  /// Empty if the device has none.
+  /// \return the serial number; empty if the device has none
   [[nodiscard]] virtual std::string serial() const = 0;
 
-  /// \name Setting up: each waits, and throws DeviceError if the device was disconnected
+  /// \name Setup: all block, and throw DeviceError if the device was disconnected
   ///@{
   virtual void control(FtdiRequest request, std::uint16_t value) = 0;
-  /// \return the number of sent bytes; fewer than all at the time limit. Throws at once if the bus
-  ///   does not return the transfer.
+  /// \return the number of sent bytes, fewer than all at the time limit
+  /// \throws DeviceError at once if the bus did not return an earlier transfer
   [[nodiscard]] virtual std::size_t send(std::span<const std::uint8_t> bytes,
                                          std::chrono::milliseconds limit) = 0;
-  /// Receives the next packet, with its status bytes.
+  /// Receives the next packet, including its status bytes.
   /// \return its length; 0 at the time limit
   [[nodiscard]] virtual std::size_t receive(std::span<std::uint8_t, kUsbPacketSize> packet,
                                             std::chrono::milliseconds limit) = 0;
@@ -60,18 +60,18 @@ class FtdiTransport {
   ///@{
   /// Queues the first read.
   /// \param sink  must outlive the stream
-  /// \throws DeviceError if it cannot
+  /// \throws DeviceError if the read cannot be queued
   virtual void start_stream(FtdiStreamSink& sink) = 0;
-  /// Ends the stream and waits, a few seconds at most, for pending transfers; if one remains, the
+  /// Ends the stream and waits at most a few seconds for pending transfers; if one remains, the
   /// device counts as lost. Safe on a lost device.
   virtual void stop_stream() noexcept = 0;
-  /// Sends without waiting, at most kUsbPacketSize bytes. If the device has not accepted the
-  /// previous packet yet, that one is cancelled and replaced, so that no old force delays a new
-  /// one. After kMaxStuck such packets in a row the link is lost.
+  /// Sends at most kUsbPacketSize bytes without waiting. If the device has not yet accepted the
+  /// previous packet, that packet is cancelled and replaced, so that an old force does not delay a
+  /// new one. After kMaxStuck such packets in a row the link is lost.
   /// \return whether the bytes were accepted
   [[nodiscard]] virtual bool post(std::span<const std::uint8_t> bytes) noexcept = 0;
   static constexpr int kMaxStuck = 5;
-  /// Waits for bytes, at most this long, and passes them to the sink.
+  /// Waits at most this long for bytes and passes them to the sink.
   virtual void serve(std::chrono::microseconds max_wait) noexcept = 0;
   /// \return whether the device is unplugged or unusable. Permanent: reopen the device.
   [[nodiscard]] virtual bool lost() const noexcept = 0;

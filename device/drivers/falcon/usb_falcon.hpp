@@ -1,4 +1,4 @@
-/// \file Finds and opens Novint Falcons on the USB, by libusb.
+/// \file Finds and opens Novint Falcons on the USB, through libusb.
 #pragma once
 
 #include "device/drivers/falcon/ftdi_transport.hpp"
@@ -11,9 +11,9 @@ namespace touchtrial::device::falcon {
 
 /// A connected Falcon.
 struct UsbFalcon {
-  std::string where;    ///< "USB bus 1 port 2, address 7"
+  std::string where;    ///< for instance "USB bus 1 port 2, address 7"
   std::string serial;   ///< empty if it has none or may not be opened
-  std::string trouble;  ///< why it cannot be opened, with the remedy, one line; empty if it can
+  std::string problem;  ///< why it cannot be opened, with the remedy, one line; empty if it can
 };
 
 /// Opens each Falcon briefly, without motion.
@@ -21,8 +21,8 @@ struct UsbFalcon {
 /// \throws DeviceError if USB cannot be used at all
 [[nodiscard]] std::vector<UsbFalcon> find_usb_falcons();
 
-/// Opens and claims a Falcon; a kernel driver that holds it is detached meanwhile.
-/// \param serial  of the one to open; empty: the only one
+/// Opens and claims a Falcon; a kernel driver is detached until it is closed.
+/// \param serial  of the Falcon to open; empty: the only one
 /// \throws DeviceError with the remedy if there is none, more than one, no permission, or another
 ///   program uses it
 [[nodiscard]] std::unique_ptr<FtdiTransport> open_usb_falcon(const std::string& serial);

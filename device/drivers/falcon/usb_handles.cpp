@@ -31,7 +31,7 @@ class UsbList {
   ssize_t count_;
 };
 
-bool is_falcon(libusb_device* device) {
+bool is_falcon_device(libusb_device* device) {
   libusb_device_descriptor descriptor{};
   return libusb_get_device_descriptor(device, &descriptor) == 0 && descriptor.idVendor == kVendor &&
          descriptor.idProduct == kProduct;
@@ -69,7 +69,7 @@ std::vector<UsbDevice> falcons_on_bus(libusb_context* context) {
   }
   std::vector<UsbDevice> falcons;
   for (ssize_t i = 0; i < list.count(); ++i) {
-    if (is_falcon(list.at(i))) falcons.emplace_back(libusb_ref_device(list.at(i)));
+    if (is_falcon_device(list.at(i))) falcons.emplace_back(libusb_ref_device(list.at(i)));
   }
   std::ranges::sort(falcons, {}, [](const UsbDevice& falcon) {
     return std::pair(libusb_get_bus_number(falcon.get()), libusb_get_device_address(falcon.get()));
@@ -77,14 +77,14 @@ std::vector<UsbDevice> falcons_on_bus(libusb_context* context) {
   return falcons;
 }
 
-std::string place_of(libusb_device* device) {
-  std::string place = "USB bus " + std::to_string(libusb_get_bus_number(device));
+std::string usb_location_of(libusb_device* device) {
+  std::string location = "USB bus " + std::to_string(libusb_get_bus_number(device));
   std::array<std::uint8_t, 7> ports{};
   const int depth = libusb_get_port_numbers(device, ports.data(), static_cast<int>(ports.size()));
   for (int i = 0; i < depth; ++i) {
-    place += (i == 0 ? " port " : ".") + std::to_string(ports[static_cast<std::size_t>(i)]);
+    location += (i == 0 ? " port " : ".") + std::to_string(ports[static_cast<std::size_t>(i)]);
   }
-  return place + ", address " + std::to_string(libusb_get_device_address(device));
+  return location + ", address " + std::to_string(libusb_get_device_address(device));
 }
 
 std::string serial_of(libusb_device_handle* handle) {
@@ -100,7 +100,8 @@ std::string serial_of(libusb_device_handle* handle) {
 UsbHandle open_usb_device(libusb_device* device) {
   libusb_device_handle* handle = nullptr;
   const int error = libusb_open(device, &handle);
-  if (error != 0) throw DeviceError("falcon at " + place_of(device) + ": " + usb_remedy(error));
+  if (error != 0)
+    throw DeviceError("falcon at " + usb_location_of(device) + ": " + usb_remedy(error));
   return UsbHandle(handle);
 }
 

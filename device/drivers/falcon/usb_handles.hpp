@@ -25,10 +25,10 @@ using UsbTransfer = std::unique_ptr<libusb_transfer, UsbRelease>;
 /// \throws DeviceError if there is not enough memory
 [[nodiscard]] UsbTransfer make_usb_transfer();
 
-/// The claimed interface of a handle; a kernel driver is detached if necessary, and reattached.
+/// Claims the interface of a handle, and detaches a kernel driver for its lifetime.
 class UsbClaim {
  public:
-  /// \throws DeviceError naming `where` if another program has it
+  /// \throws DeviceError naming `where` if another program uses it
   UsbClaim(libusb_device_handle* handle, const std::string& where);
   ~UsbClaim();
   UsbClaim(const UsbClaim&) = delete;
@@ -42,8 +42,8 @@ class UsbClaim {
 /// \throws DeviceError if the bus cannot be read
 [[nodiscard]] std::vector<UsbDevice> falcons_on_bus(libusb_context* context);
 /// \return for instance "USB bus 1 port 2, address 7"
-[[nodiscard]] std::string place_of(libusb_device* device);
-/// \return empty if the device has none or does not report it
+[[nodiscard]] std::string usb_location_of(libusb_device* device);
+/// \return the serial number; empty if the device does not report one
 [[nodiscard]] std::string serial_of(libusb_device_handle* handle);
 /// \throws DeviceError with the remedy if it may not be opened or was disconnected
 [[nodiscard]] UsbHandle open_usb_device(libusb_device* device);

@@ -19,19 +19,18 @@ constexpr double kRateHz = 1e9 / static_cast<double>(Inverse3Device::kPeriod.cou
 /// Radius of the sphere that the arm reaches, mm.
 constexpr double kInverse3RadiusMm = 100.0;
 constexpr double kMinverseRadiusMm = 40.0;
-/// The arm cannot be further from the middle, m.
+/// A position further from the centre is invalid, m.
 constexpr double kMaxM = 1.0;
-/// The middle of the workspace in the frame of the arm's base, which services before 3.5 use, m.
-/// From positions in the documentation's examples; not verified.
-constexpr Vec3 kCentreFromBaseM = {0.0, -0.12, 0.15};
-/// How often, and at what interval, the configuration is queried until it matches.
-constexpr int kReadBacks = 20;
-constexpr milliseconds kReadBackInterval{10};
+/// The centre of the workspace in the arm's base frame, which services before 3.5 use, m. Estimated
+/// from examples in the documentation; not verified.
+constexpr Vec3 kCentreInBaseFrameM = {0.0, -0.12, 0.15};
+/// Maximum number of queries until the configuration matches.
+constexpr int kMaxReadBacks = 20;
+constexpr milliseconds kReadBackInterval{10};  ///< between these queries
 constexpr milliseconds kListTimeout{5000};
 constexpr milliseconds kFinalTimeout{200};
 
-/// The service's x to the right, y away, z up, and ours: x to the right, y up, z towards the
-/// person.
+/// Converts from the service's axes (x right, y away from the person, z up) to the device frame.
 Vec3 to_device_axes(Vec3 service) noexcept {
   return {service.x, service.z, -service.y};
 }
@@ -50,67 +49,68 @@ ServiceAddress address_of(const Inverse3Settings& settings) {
   return {settings.host, settings.port};
 }
 
-/// Sends a query that must have an answer.
-std::string answer_of(const ServiceAddress& http, const std::string& path,
-                      std::chrono::nanoseconds timeout) {
-  const HttpAnswer answer = ask_service(http, path, timeout);
+/// \return the answer to a query
+/// \throws DeviceError if the service does not provide the path
+std::string required_answer(const ServiceAddress& http, const std::string& path,
+                            std::chrono::nanoseconds timeout) {
+  const HttpAnswer answer = query_service(http, path, timeout);
   if (answer.status == 200) return answer.body;
-  throw DeviceError(one_line("inverse3: the service at " + http.text() + " does not know " + path +
-                             " (HTTP " + std::to_string(answer.status) +
+  throw DeviceError(one_line("inverse3: the service at " + http.text() + " does not provide " +
+                             path + " (HTTP " + std::to_string(answer.status) +
                              "); update Haply's Inverse service, to 3.5 or later"));
 }
 
-[[noreturn]] void refuse_answer(const ServiceAddress& service, const std::string& what,
-                                const BadMessage& error) {
-  throw DeviceError(one_line("inverse3: " + what + " from " + service.text() + " makes no sense (" +
+[[noreturn]] void refuse_message(const ServiceAddress& service, const std::string& subject,
+                                 const BadMessage& error) {
+  throw DeviceError(one_line("inverse3: " + subject + " from " + service.text() + " is invalid (" +
                              error.what() +
                              "); correct inverse3.host and inverse3.port, or update the service"));
 }
 
-KnownService service_at(const ServiceAddress& http, const std::string& version_answer) {
+ServiceInfo check_service(const ServiceAddress& http, const std::string& version_answer) {
   ServiceVersion version;
   try {
-    version = version_in(version_answer);
+    version = parse_version(version_answer);
   } catch (const BadMessage& error) {
-    refuse_answer(http, "the version", error);
+    refuse_message(http, "the version", error);
   }
-  if (version.is_known()) return {version, http};
+  if (version.is_supported()) return {version, http};
   throw DeviceError("inverse3: the service at " + one_line(http.text()) + " has version " +
-                    version.text() + ", and versions 3.1 to 3.x are known; install 3.5 or later");
+                    version.text() + ", but only 3.1 to 3.x are supported; install 3.5 or later");
 }
 
-/// Older services, up to early 3.5, have HTTP on a separate port.
+/// Finds an older service, up to early 3.5, which has HTTP on a separate port.
 /// \return nothing if that port has no HTTP either
-std::optional<KnownService> older_service(const Inverse3Settings& settings,
-                                          std::chrono::nanoseconds timeout) {
+std::optional<ServiceInfo> find_older_service(const Inverse3Settings& settings,
+                                              std::chrono::nanoseconds timeout) {
   const ServiceAddress http{settings.host, settings.http_port};
   HttpAnswer answer;
   try {
-    answer = ask_service(http, "/version", timeout);
+    answer = query_service(http, "/version", timeout);
   } catch (const DeviceError&) {
     return std::nullopt;
   }
-  if (answer.status == 200) return service_at(http, answer.body);
+  if (answer.status == 200) return check_service(http, answer.body);
   throw DeviceError(one_line("inverse3: the service at " + http.text() +
-                             " does not know /version (HTTP " + std::to_string(answer.status) +
+                             " does not provide /version (HTTP " + std::to_string(answer.status) +
                              "), so it is older than 3.1; install Haply's Inverse service 3.5 or "
                              "later"));
 }
 
-KnownService find_service(const Inverse3Settings& settings, std::chrono::nanoseconds timeout) {
+ServiceInfo find_service(const Inverse3Settings& settings, std::chrono::nanoseconds timeout) {
   const ServiceAddress default_address = address_of(settings);
   std::string error;
   try {
-    const HttpAnswer answer = ask_service(default_address, "/version", timeout);
-    if (answer.status == 200) return service_at(default_address, answer.body);
-    error = "inverse3: what listens at " + default_address.text() +
-            " has no HTTP, and nothing does at " + std::to_string(settings.http_port) +
-            "; start Haply's Inverse service 3.5 or later, or correct inverse3.host, inverse3.port "
-            "and inverse3.http_port";
-  } catch (const NoService& none) {
-    error = none.what();
+    const HttpAnswer answer = query_service(default_address, "/version", timeout);
+    if (answer.status == 200) return check_service(default_address, answer.body);
+    error = "inverse3: neither " + default_address.text() + " nor port " +
+            std::to_string(settings.http_port) +
+            " answers HTTP; start Haply's Inverse service 3.5 or later, or correct inverse3.host, "
+            "inverse3.port and inverse3.http_port";
+  } catch (const NoService& no_service) {
+    error = no_service.what();
   }
-  if (auto older = older_service(settings, timeout)) return *older;
+  if (auto older = find_older_service(settings, timeout)) return *older;
   throw DeviceError(one_line(error));
 }
 
@@ -132,82 +132,84 @@ DeviceReadiness readiness_of(const ArmStatus& status) noexcept {
 }
 
 /// \return why the configuration is unsuitable, and the remedy; empty if suitable
-std::string fault_in(const DeviceConfig& config) {
+std::string configuration_fault(const DeviceConfig& config) {
   const std::string remedy = "; reset it for the profile touchtrial in Haply Hub, or close the Hub";
   if (!config.force_gate || !config.damping) {
     return "the service does not report its force gate and damping, which alter textures; update "
            "it";
   }
   if (*config.force_gate != 0.0) {
-    return "the service keeps its force gate at " + number_text(*config.force_gate) +
+    return "the service's force gate stays at " + number_text(*config.force_gate) +
            ", which alters textures" + remedy;
   }
   if (*config.damping != 0.0) {
-    return "the service keeps its damping at " + number_text(*config.damping) +
+    return "the service's damping stays at " + number_text(*config.damping) +
            ", which alters textures" + remedy;
   }
   if (config.preset != kCentredPreset) {
-    return "the service keeps the preset " + config.preset + " instead of " + kCentredPreset +
-           remedy;
+    return "the service's preset stays " + config.preset + " instead of " + kCentredPreset + remedy;
   }
-  if (!config.plain_frame) return "the service turns or scales positions and forces" + remedy;
+  if (!config.plain_frame) return "the service rotates or scales positions and forces" + remedy;
   return "";
 }
 
-std::string switched(const std::optional<bool>& on) {
-  if (!on) return "not told";
-  return *on ? "on" : "off";
+std::string on_off_text(const std::optional<bool>& setting) {
+  if (!setting) return "not reported";
+  return *setting ? "on" : "off";
 }
 
-/// The configuration between command and force, which a session records as firmware.
+/// The service's processing of forces, which a session records as firmware.
 std::string firmware_text(const DeviceConfig& config, const ServiceVersion& version) {
   std::string text = config.firmware.empty() ? "" : config.firmware + ", ";
   text += "service " + version.text();
   if (!config.handedness.empty()) text += ", " + config.handedness + "-handed";
   if (config.force_gate) text += ", force gate " + number_text(*config.force_gate);
   if (config.damping) text += ", damping " + number_text(*config.damping);
-  text += ", torque scaling " + switched(config.torque_scaling);
+  text += ", torque scaling " + on_off_text(config.torque_scaling);
   if (config.gravity_compensation) {
     text += ", gravity compensation " + number_text(*config.gravity_compensation);
   }
-  text += ", home return " + switched(config.home_return);
+  text += ", home return " + on_off_text(config.home_return);
   return one_line(text);
 }
 
-std::vector<std::string> needs_of(const ArmStatus& status) {
-  std::vector<std::string> needs;
-  if (!status.power_supply) needs.push_back("it has no power; connect its power supply");
+std::vector<std::string> required_actions(const ArmStatus& status) {
+  std::vector<std::string> actions;
+  if (!status.power_supply) actions.push_back("it has no power; connect its power supply");
   if (!status.calibrated) {
-    needs.push_back("it is not calibrated; put the grip into its inkwell until its light changes");
+    actions.push_back(
+        "it is not calibrated; put the grip into its inkwell until its light changes");
   }
-  return needs;
+  return actions;
 }
 
 std::vector<DeviceListing> list_inverse3(const DeviceSettings& settings) {
-  const Inverse3Settings& ours = settings.inverse3;
-  DeviceListing nothing{"inverse3", "", "", address_of(ours).text(), false, {}};
+  const Inverse3Settings& inverse3_settings = settings.inverse3;
+  DeviceListing listing_template{"inverse3", "", "", address_of(inverse3_settings).text(),
+                                 false,      {}};
   try {
-    const KnownService known = find_service(ours, kListTimeout);
-    const ServiceReport inventory = report_in(answer_of(known.http, "/devices", kListTimeout));
-    std::vector<DeviceListing> found;
+    const ServiceInfo service = find_service(inverse3_settings, kListTimeout);
+    const ServiceReport inventory =
+        parse_report(required_answer(service.http, "/devices", kListTimeout));
+    std::vector<DeviceListing> listings;
     for (const DeviceReport& device : inventory.devices) {
-      DeviceListing listing = nothing;
+      DeviceListing listing = listing_template;
       listing.model = model_of(device.config ? device.config->type : "inverse3");
       listing.serial = one_line(device.id);
-      listing.where += ", service " + known.version.text();
+      listing.where += ", service " + service.version.text();
       listing.present = true;
-      if (device.status) listing.missing = needs_of(*device.status);
-      found.push_back(std::move(listing));
+      if (device.status) listing.missing = required_actions(*device.status);
+      listings.push_back(std::move(listing));
     }
-    if (!found.empty()) return found;
-    nothing.missing = {"the service runs and has no Inverse3; plug it in and switch it on"};
+    if (!listings.empty()) return listings;
+    listing_template.missing = {"the service has no Inverse3; plug it in and switch it on"};
   } catch (const DeviceError& error) {
-    nothing.missing = {error.what()};
+    listing_template.missing = {error.what()};
   } catch (const BadMessage& error) {
-    nothing.missing = {one_line("inverse3: the list of devices makes no sense (" +
-                                std::string(error.what()) + "); update the service")};
+    listing_template.missing = {one_line("inverse3: the list of devices is invalid (" +
+                                         std::string(error.what()) + "); update the service")};
   }
-  return {nothing};
+  return {listing_template};
 }
 
 std::unique_ptr<HapticDevice> open_inverse3(const DeviceSettings& settings) {
@@ -219,15 +221,15 @@ std::unique_ptr<HapticDevice> open_inverse3(const DeviceSettings& settings) {
 Inverse3Device::Inverse3Device(const Inverse3Settings& settings, Inverse3Options options)
     : settings_(settings),
       options_(std::move(options)),
-      known_(find_service(settings_, options_.timeout)) {
+      service_info_(find_service(settings_, options_.timeout)) {
   service_ = std::make_unique<ServiceLink>(address_of(settings_), options_.timeout);
   try {
-    const ServiceReport inventory = report_in(service_->answer());
+    const ServiceReport inventory = parse_report(service_->answer());
     choose_device(inventory);
     expect_no_other_session(inventory);
     configure();
   } catch (const BadMessage& error) {
-    refuse_answer(address_of(settings_), "what comes", error);
+    refuse_message(address_of(settings_), "a message", error);
   }
   thread_ = std::thread([this] {
     (void)request_scheduling(options_.scheduling);
@@ -250,7 +252,7 @@ void Inverse3Device::choose_device(const ServiceReport& inventory) {
   }
   if (settings_.device_id.empty() && devices.size() > 1) {
     throw DeviceError(one_line("inverse3: the service has several devices (" + ids_of(devices) +
-                               "); name one at inverse3.device_id in the device settings"));
+                               "); set inverse3.device_id in the device settings"));
   }
   id_ = settings_.device_id.empty() ? devices.front().id : settings_.device_id;
   const DeviceReport* const device = find_device(inventory, id_);
@@ -263,22 +265,22 @@ void Inverse3Device::choose_device(const ServiceReport& inventory) {
     throw DeviceError(one_line("inverse3: " + id_ + " has no power; connect its power supply"));
   }
   session_id_ = inventory.session_id;
-  centre_m_ = known_.version.has_filters() ? Vec3{} : kCentreFromBaseM;
-  note_status(*device->status);
+  centre_m_ = service_info_.version.has_filters() ? Vec3{} : kCentreInBaseFrameM;
+  update_status(*device->status);
   describe(device->config.value_or(DeviceConfig{}));
 }
 
-/// Forces of several sessions would add up beyond our safety limits.
+/// Forces of several sessions would add up and exceed the safety limits.
 void Inverse3Device::expect_no_other_session(const ServiceReport& inventory) const {
   const std::string remedy =
-      "; forces of several programs would add up: close the other one (Haply Hub too)";
-  if (!known_.version.has_filters()) {
+      "; forces of several programs would add up; close the others, including Haply Hub";
+  if (!service_info_.version.has_filters()) {
     const auto& status = find_device(inventory, id_)->status;
     if (!status->in_use) return;
     throw DeviceError(one_line("inverse3: another program uses " + id_ + remedy));
   }
   const std::vector<std::string> sessions =
-      sessions_in(answer_of(known_.http, "/sessions", options_.timeout));
+      parse_sessions(required_answer(service_info_.http, "/sessions", options_.timeout));
   if (sessions.size() <= 1) return;
   std::string names;
   for (const std::string& name : sessions) {
@@ -288,55 +290,55 @@ void Inverse3Device::expect_no_other_session(const ServiceReport& inventory) con
                              (names.empty() ? "" : " (" + names + ")") + remedy));
 }
 
-DeviceReport Inverse3Device::ask_for_inventory(const std::string& message) {
+DeviceReport Inverse3Device::exchange_configuration(const std::string& message) {
   if (service_->exchange(message, options_.timeout) != LinkOutcome::ok) {
     throw DeviceError(one_line("inverse3: the service at " + address_of(settings_).text() +
-                               " does not answer its configuration; start it again"));
+                               " does not answer its configuration; restart it"));
   }
-  const ServiceReport report = report_in(service_->answer());
+  const ServiceReport report = parse_report(service_->answer());
   const DeviceReport* const device = find_device(report, id_);
-  if (device == nullptr) throw BadMessage("the device is gone");
+  if (device == nullptr) throw BadMessage("the device has disappeared");
   return *device;
 }
 
 void Inverse3Device::configure() {
-  DeviceReport device = ask_for_inventory(first_message(known_.version, id_));
-  if (known_.version.has_filters()) {
-    std::string trouble = "the service does not report its configuration; update it";
-    for (int i = 0; i < kReadBacks && !trouble.empty(); ++i) {
+  DeviceReport device = exchange_configuration(first_message(service_info_.version, id_));
+  if (service_info_.version.has_filters()) {
+    std::string problem = "the service does not report its configuration; update it";
+    for (int i = 0; i < kMaxReadBacks && !problem.empty(); ++i) {
       if (i > 0) std::this_thread::sleep_for(kReadBackInterval);
-      device = ask_for_inventory(inventory_request(known_.version, id_));
-      if (device.config) trouble = fault_in(*device.config);
+      device = exchange_configuration(inventory_request(service_info_.version, id_));
+      if (device.config) problem = configuration_fault(*device.config);
     }
-    if (!trouble.empty()) throw DeviceError(one_line("inverse3: " + trouble));
+    if (!problem.empty()) throw DeviceError(one_line("inverse3: " + problem));
   }
   if (device.config) {
     refuse_home_return(*device.config);
     describe(*device.config);
   }
-  if (device.status) note_status(*device.status);
+  if (device.status) update_status(*device.status);
   listen_to_events();
 }
 
-/// It is a setting of the device, not of the session, so it is not changed here.
+/// Home return is a setting of the device, not of the session, so the driver does not change it.
 void Inverse3Device::refuse_home_return(DeviceConfig& config) const {
   const std::string path = "/inverse3/" + id_ + "/config/home_return";
   if (!config.home_return) {
-    const HttpAnswer answer = ask_service(known_.http, path, options_.timeout);
-    if (answer.status == 200) config.home_return = home_return_in(answer.body);
+    const HttpAnswer answer = query_service(service_info_.http, path, options_.timeout);
+    if (answer.status == 200) config.home_return = parse_home_return(answer.body);
   }
   if (!config.home_return.value_or(false)) return;
   throw DeviceError(
-      one_line("inverse3: the arm's home return is on, which moves the hand by itself; "
+      one_line("inverse3: the arm's home return is on, which moves the hand; "
                "switch it off in Haply Hub, or over HTTP at " +
-               known_.http.text() + path));
+               service_info_.http.text() + path));
 }
 
 /// Services before 3.5 may lack the channel.
 void Inverse3Device::listen_to_events() try {
   service_->listen_to({settings_.host, settings_.events_port}, options_.timeout);
 } catch (const DeviceError&) {
-  if (!known_.version.has_filters()) return;
+  if (!service_info_.version.has_filters()) return;
   throw DeviceError(one_line(
       "inverse3: the service's events, which report its emergency brake, cannot be received at " +
       settings_.host + ':' + std::to_string(settings_.events_port) +
@@ -347,7 +349,7 @@ void Inverse3Device::describe(const DeviceConfig& config) {
   info_.name = "inverse3";
   info_.serial = one_line(id_);
   info_.model = model_of(config.type);
-  info_.firmware = firmware_text(config, known_.version);
+  info_.firmware = firmware_text(config, service_info_.version);
   info_.max_force_n = settings_.max_force_n;
   info_.max_rate_hz = kRateHz;
   info_.has_encoders = true;
@@ -374,12 +376,12 @@ void Inverse3Device::exchange_until_stopped() noexcept {
 }
 
 void Inverse3Device::exchange() {
-  // Read even if it is not sent, so that no old force remains in the link.
-  const Vec3 wanted_n = link_.force_to_send(options_.pace->now());
-  const bool may_push = status_.is_usable() && is_finite(wanted_n);
-  const Vec3 sent_n = may_push ? within_reach(wanted_n) : Vec3{};
-  switch (service_->exchange(force_message(known_.version, id_, to_service_axes(sent_n)),
-                             options_.silence)) {
+  // Read even if not sent, so that no old force remains in the link.
+  const Vec3 requested_n = link_.force_to_send(options_.pace->now());
+  const bool is_allowed = status_.is_usable() && is_finite(requested_n);
+  const Vec3 sent_n = is_allowed ? limit_to_max_force(requested_n) : Vec3{};
+  switch (service_->exchange(force_message(service_info_.version, id_, to_service_axes(sent_n)),
+                             options_.answer_timeout)) {
     case LinkOutcome::ok:
       break;
     case LinkOutcome::nonsense:
@@ -388,20 +390,20 @@ void Inverse3Device::exchange() {
     case LinkOutcome::closed:
       return link_.fail(DeviceFault::link_lost);
   }
-  for (const std::string& event : service_->take_events()) handle_event(event_in(event));
+  for (const std::string& event : service_->take_events()) handle_event(parse_event(event));
   if (service_->events_ended()) return link_.fail(DeviceFault::link_lost);
-  const ServiceReport report = report_in(service_->answer());
+  const ServiceReport report = parse_report(service_->answer());
   const DeviceReport* const device = find_device(report, id_);
   if (device == nullptr) return link_.fail(DeviceFault::link_lost);
-  take(*device, report.buttons);
+  publish_sample(*device, report.buttons);
 }
 
-void Inverse3Device::take(const DeviceReport& report, std::uint32_t buttons) noexcept {
-  const Vec3 place_m = report.position_m - centre_m_;
-  if (norm(place_m) > kMaxM) return link_.fail(DeviceFault::bad_data);
-  if (report.status) note_status(*report.status);
+void Inverse3Device::publish_sample(const DeviceReport& report, std::uint32_t buttons) noexcept {
+  const Vec3 position_m = report.position_m - centre_m_;
+  if (norm(position_m) > kMaxM) return link_.fail(DeviceFault::bad_data);
+  if (report.status) update_status(*report.status);
   DeviceSample sample;
-  sample.position_mm = kMmPerM * to_device_axes(place_m);
+  sample.position_mm = kMmPerM * to_device_axes(position_m);
   sample.velocity_mm_s = kMmPerM * to_device_axes(report.velocity_m_s);
   sample.buttons = buttons;
   sample.ready = status_.is_usable();
@@ -409,47 +411,48 @@ void Inverse3Device::take(const DeviceReport& report, std::uint32_t buttons) noe
   link_.publish(sample);
 }
 
-void Inverse3Device::note_status(const ArmStatus& status) noexcept {
+void Inverse3Device::update_status(const ArmStatus& status) noexcept {
   status_ = status;
   readiness_.store(readiness_of(status), std::memory_order_release);
 }
 
 void Inverse3Device::handle_event(const ServiceEvent& event) noexcept {
-  const bool of_other_session = event.category == "session" && event.session_id && session_id_ &&
+  const bool is_other_session = event.category == "session" && event.session_id && session_id_ &&
                                 *event.session_id != *session_id_;
-  if (of_other_session) return link_.fail(DeviceFault::driver);
+  if (is_other_session) return link_.fail(DeviceFault::driver);
   if (!event.device_id.empty() && event.device_id != id_) return;
   if (event.name == "device-disconnected") link_.fail(DeviceFault::link_lost);
   if (event.name == "device-busy") link_.fail(DeviceFault::driver);
-  const bool stopped = event.safety_type == "ebrake_triggered" ||
-                       event.safety_type == "stall_detected" ||
-                       event.safety_type == "stability_ceiling";
-  if (event.name == "device-safety-triggered" && stopped) link_.fail(DeviceFault::limit_passed);
+  const bool is_safety_stop = event.safety_type == "ebrake_triggered" ||
+                              event.safety_type == "stall_detected" ||
+                              event.safety_type == "stability_ceiling";
+  if (event.name == "device-safety-triggered" && is_safety_stop)
+    link_.fail(DeviceFault::limit_passed);
 }
 
 void Inverse3Device::send_final_zeros() noexcept {
   try {
-    const std::string no_force = force_message(known_.version, id_, {});
-    // Waits for answers, because messages in transit at closing may be lost.
-    bool answers = true;
+    const std::string no_force = force_message(service_info_.version, id_, {});
+    // Waits for answers, because closing may lose messages in transit.
+    bool has_answers = true;
     for (int i = 0; i < kFinalPackets; ++i) {
-      if (answers) {
-        answers = service_->exchange(no_force, options_.silence) == LinkOutcome::ok;
+      if (has_answers) {
+        has_answers = service_->exchange(no_force, options_.answer_timeout) == LinkOutcome::ok;
       } else {
         service_->post(no_force, kFinalTimeout);
       }
     }
   } catch (const std::exception&) {
-    // Without messages the arm goes idle by itself.
+    // Without messages the arm becomes idle.
   }
   service_->close(kFinalTimeout);
 }
 
-Vec3 Inverse3Device::within_reach(Vec3 force_n) const noexcept {
-  const double largest_n =
+Vec3 Inverse3Device::limit_to_max_force(Vec3 force_n) const noexcept {
+  const double max_axis_n =
       std::max({std::abs(force_n.x), std::abs(force_n.y), std::abs(force_n.z)});
   const double limit_n = settings_.max_force_n;
-  return largest_n > limit_n ? (limit_n / largest_n) * force_n : force_n;
+  return max_axis_n > limit_n ? (limit_n / max_axis_n) * force_n : force_n;
 }
 
 }  // namespace touchtrial::device::inverse3
@@ -468,29 +471,29 @@ DeviceDriver inverse3_driver() {
                    {"inverse3x", "Haply Inverse3x"},
                    {"minverse", "Haply Minverse"}},
       .unverified = {
-          {"signs", "which way positions and forces run on each axis"},
-          {"ports", "whether HTTP, simulation and events answer at the ports of the settings"},
+          {"signs", "the signs of positions and forces on each axis"},
+          {"ports", "whether HTTP, simulation and events answer at the configured ports"},
           {"filters", "whether force gate and damping stay at 0 after they are read back"},
-          {"torque_scaling", "what torque scaling does to a force within the limits"},
-          {"lengths", "whether a millimetre of the service is one at the handle"},
-          {"middle", "the middle of the reach in the device's frame"},
-          {"delivered", "whether the force that the service says it exerted is the commanded one"},
-          {"readings", "how often a new state comes"},
-          {"program_silent", "whether the arm goes idle, and how soon, when messages stop"},
-          {"cable_silent", "what the arm does when its cable is pulled"},
-          {"service_killed", "what the arm does when the service is killed"},
+          {"torque_scaling", "the effect of torque scaling on a force within the limits"},
+          {"lengths", "whether the service's millimetre is a millimetre at the handle"},
+          {"middle", "the centre of the workspace in the device's frame"},
+          {"delivered", "whether the force that the service reports is the commanded one"},
+          {"readings", "the rate of new states"},
+          {"program_silent", "whether and how soon the arm becomes idle when messages stop"},
+          {"cable_silent", "the arm's behaviour when its cable is pulled"},
+          {"service_killed", "the arm's behaviour when the service is killed"},
           {"peak_force",
-           "the largest force, and what the motors can hold: no number is published (device accept "
-           "--thermal)"},
+           "the maximum and the continuous force; neither is published (device accept --thermal)"},
           {"latency", "the latency of service, USB and motors (device accept, step shake)"},
           {"home_return",
            "the form of the service's answer about home_return",
-           "Does touchtrial device list or the service say that home return is off?",
+           "Does touchtrial device list or the service report that home return is off?",
            {"off", "on", "not_told"}},
           {"sessions",
            "the form of the events about sessions, and whether a session that begins later is "
-           "seen"},
-          {"in_use", "whether in_use is true for one's own session (services before 3.5)"}}};
+           "detected"},
+          {"in_use",
+           "whether in_use is true for the program's own session (services before 3.5)"}}};
 }
 
 }  // namespace touchtrial::device

@@ -25,39 +25,39 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMaxEvents = 256;
 
-Clock::time_point deadline_in(std::chrono::nanoseconds timeout) {
+Clock::time_point deadline_after(std::chrono::nanoseconds timeout) {
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
 }
 
-[[noreturn]] void refuse(const ServiceAddress& where, const std::string& why) {
-  throw NoService(one_line("inverse3: no service answers at " + where.text() + " (" + why +
+[[noreturn]] void refuse(const ServiceAddress& where, const std::string& reason) {
+  throw NoService(one_line("inverse3: no service answers at " + where.text() + " (" + reason +
                            "); start Haply's Inverse service (Haply Hub, or systemctl start "
                            "haply-inverse-service), or correct inverse3.host and inverse3.port"));
 }
 
 /// Runs the context until a condition holds.
 /// \return false at the time limit
-template <typename Holds>
-bool run_until(asio::io_context& context, Clock::time_point deadline, Holds holds) {
+template <typename Condition>
+bool run_until(asio::io_context& context, Clock::time_point deadline, Condition condition) {
   context.restart();
-  while (!holds()) {
-    if (context.run_one_until(deadline) == 0) return holds();
+  while (!condition()) {
+    if (context.run_one_until(deadline) == 0) return condition();
   }
   return true;
 }
 
-/// Waits for one operation.
-/// \param start  starts it with the given handler
-/// \param give_up  cancels it
-template <typename Start, typename GiveUp>
+/// Runs one asynchronous operation.
+/// \param start  starts the operation with the given handler
+/// \param cancel  called at the deadline
+template <typename Start, typename Cancel>
 error_code await(asio::io_context& context, Clock::time_point deadline, Start start,
-                 GiveUp give_up) {
+                 Cancel cancel) {
   std::optional<error_code> result;
   start([&result](error_code error, auto&&...) { result = error; });
-  const auto ended = [&result] { return result.has_value(); };
-  if (run_until(context, deadline, ended)) return *result;
-  give_up();
-  while (!ended() && context.run_one() > 0) {
+  const auto has_ended = [&result] { return result.has_value(); };
+  if (run_until(context, deadline, has_ended)) return *result;
+  cancel();
+  while (!has_ended() && context.run_one() > 0) {
   }
   return asio::error::timed_out;
 }
@@ -66,17 +66,18 @@ error_code await(asio::io_context& context, Clock::time_point deadline, Start st
 void connect(asio::io_context& context, Tcp::socket& socket, const ServiceAddress& where,
              Clock::time_point deadline) {
   error_code error;
-  const auto places = Tcp::resolver(context).resolve(where.host, std::to_string(where.port), error);
+  const auto endpoints =
+      Tcp::resolver(context).resolve(where.host, std::to_string(where.port), error);
   if (error) refuse(where, error.message());
   error = await(
       context, deadline,
-      [&](auto handler) { asio::async_connect(socket, places, std::move(handler)); },
+      [&](auto handler) { asio::async_connect(socket, endpoints, std::move(handler)); },
       [&] {
         error_code ignored;
         socket.close(ignored);
       });
   if (error) refuse(where, error.message());
-  // Small messages must not be delayed (Nagle).
+  // Disables Nagle's algorithm, which delays small messages.
   socket.set_option(Tcp::no_delay(true), error);
 }
 
@@ -87,7 +88,7 @@ class Channel {
       : context_(context), stream_(context) {
     connect(context, stream_.next_layer(), where, deadline);
     stream_.read_message_max(kMaxMessage);
-    const error_code error = wait(deadline, [&](auto handler) {
+    const error_code error = run_operation(deadline, [&](auto handler) {
       stream_.async_handshake(where.text(), "/", std::move(handler));
     });
     if (error) refuse(where, error.message());
@@ -96,26 +97,26 @@ class Channel {
   }
 
   [[nodiscard]] error_code write(const std::string& message, Clock::time_point deadline) {
-    return wait(deadline, [&](auto handler) {
+    return run_operation(deadline, [&](auto handler) {
       stream_.async_write(asio::buffer(message), std::move(handler));
     });
   }
   void close(Clock::time_point deadline) {
-    (void)wait(deadline, [&](auto handler) {
+    (void)run_operation(deadline, [&](auto handler) {
       stream_.async_close(websocket::close_code::normal, std::move(handler));
     });
   }
 
-  [[nodiscard]] std::uint64_t received() const noexcept { return received_; }
-  [[nodiscard]] const error_code& ended() const noexcept { return ended_; }
+  [[nodiscard]] std::uint64_t received_count() const noexcept { return received_; }
+  [[nodiscard]] const error_code& end_reason() const noexcept { return end_reason_; }
   [[nodiscard]] const std::string& newest() const noexcept { return newest_; }
-  /// Buffers messages until they are taken, up to a number of newest ones.
-  void keep_messages() { keeps_ = true; }
-  [[nodiscard]] std::vector<std::string> take() { return std::exchange(kept_, {}); }
+  /// Stores messages until they are taken, at most kMaxEvents.
+  void store_messages() { stores_messages_ = true; }
+  [[nodiscard]] std::vector<std::string> take_messages() { return std::exchange(messages_, {}); }
 
  private:
   template <typename Start>
-  error_code wait(Clock::time_point deadline, Start start) {
+  error_code run_operation(Clock::time_point deadline, Start start) {
     return await(context_, deadline, start, [this] {
       error_code ignored;
       stream_.next_layer().close(ignored);
@@ -125,13 +126,13 @@ class Channel {
   void read() {
     stream_.async_read(buffer_, [this](error_code error, std::size_t) {
       if (error) {
-        ended_ = error;
+        end_reason_ = error;
         return;
       }
       newest_ = beast::buffers_to_string(buffer_.data());
       buffer_.consume(buffer_.size());
       ++received_;
-      if (keeps_ && kept_.size() < kMaxEvents) kept_.push_back(newest_);
+      if (stores_messages_ && messages_.size() < kMaxEvents) messages_.push_back(newest_);
       read();
     });
   }
@@ -140,38 +141,38 @@ class Channel {
   websocket::stream<Tcp::socket> stream_;
   beast::flat_buffer buffer_;
   std::string newest_;
-  std::vector<std::string> kept_;
+  std::vector<std::string> messages_;
   std::uint64_t received_ = 0;
-  error_code ended_;
-  bool keeps_ = false;
+  error_code end_reason_;
+  bool stores_messages_ = false;
 };
 
 LinkOutcome outcome_of(const error_code& error) {
   if (!error) return LinkOutcome::ok;
   if (error == asio::error::timed_out) return LinkOutcome::silent;
-  const bool nonsense = error == websocket::condition::protocol_violation ||
-                        error == websocket::error::message_too_big;
-  return nonsense ? LinkOutcome::nonsense : LinkOutcome::closed;
+  const bool is_nonsense = error == websocket::condition::protocol_violation ||
+                           error == websocket::error::message_too_big;
+  return is_nonsense ? LinkOutcome::nonsense : LinkOutcome::closed;
 }
 
 }  // namespace
 
-HttpAnswer ask_service(const ServiceAddress& service, const std::string& path,
-                       std::chrono::nanoseconds timeout) {
-  const Clock::time_point deadline = deadline_in(timeout);
+HttpAnswer query_service(const ServiceAddress& service, const std::string& path,
+                         std::chrono::nanoseconds timeout) {
+  const Clock::time_point deadline = deadline_after(timeout);
   asio::io_context context;
   Tcp::socket socket(context);
   connect(context, socket, service, deadline);
   http::request<http::empty_body> request(http::verb::get, path, 11);
   request.set(http::field::host, service.text());
   request.set(http::field::connection, "close");
-  const auto give_up = [&] {
+  const auto cancel = [&] {
     error_code ignored;
     socket.close(ignored);
   };
   error_code error = await(
       context, deadline,
-      [&](auto handler) { http::async_write(socket, request, std::move(handler)); }, give_up);
+      [&](auto handler) { http::async_write(socket, request, std::move(handler)); }, cancel);
   beast::flat_buffer buffer;
   http::response_parser<http::string_body> parser;
   parser.body_limit(kMaxMessage);
@@ -179,7 +180,7 @@ HttpAnswer ask_service(const ServiceAddress& service, const std::string& path,
     error = await(
         context, deadline,
         [&](auto handler) { http::async_read(socket, buffer, parser, std::move(handler)); },
-        give_up);
+        cancel);
   }
   if (error) refuse(service, error.message());
   return {parser.get().result_int(), std::move(parser.get().body())};
@@ -191,22 +192,26 @@ struct ServiceLink::Channels {
 
   /// \return ok once every message has its answer
   LinkOutcome wait_for_answer(Clock::time_point deadline) {
-    const auto answered = [this] { return simulation.received() >= sent || simulation.ended(); };
-    if (!run_until(context, deadline, answered)) return LinkOutcome::silent;
-    if (simulation.ended()) return outcome_of(simulation.ended());
-    return simulation.received() == sent ? LinkOutcome::ok : LinkOutcome::nonsense;
+    const auto is_answered = [this] {
+      return simulation.received_count() >= expected_answers || simulation.end_reason();
+    };
+    if (!run_until(context, deadline, is_answered)) return LinkOutcome::silent;
+    if (simulation.end_reason()) return outcome_of(simulation.end_reason());
+    return simulation.received_count() == expected_answers ? LinkOutcome::ok
+                                                           : LinkOutcome::nonsense;
   }
 
   asio::io_context context;
   Channel simulation;
   std::optional<Channel> events;
-  /// Messages that require an answer; the inventory counts as the answer to the connection.
-  std::uint64_t sent = 1;
+  /// The number of answers expected since connecting. It begins with 1, because the service first
+  /// sends its inventory.
+  std::uint64_t expected_answers = 1;
 };
 
 ServiceLink::ServiceLink(const ServiceAddress& service, std::chrono::nanoseconds timeout)
-    : channels_(std::make_unique<Channels>(service, deadline_in(timeout))) {
-  const LinkOutcome outcome = channels_->wait_for_answer(deadline_in(timeout));
+    : channels_(std::make_unique<Channels>(service, deadline_after(timeout))) {
+  const LinkOutcome outcome = channels_->wait_for_answer(deadline_after(timeout));
   if (outcome == LinkOutcome::silent)
     refuse(service, "it accepts connections, but does not answer");
   if (outcome != LinkOutcome::ok) refuse(service, "it ends the connection");
@@ -215,21 +220,22 @@ ServiceLink::ServiceLink(const ServiceAddress& service, std::chrono::nanoseconds
 ServiceLink::~ServiceLink() = default;
 
 void ServiceLink::listen_to(const ServiceAddress& events, std::chrono::nanoseconds timeout) {
-  channels_->events.emplace(channels_->context, events, deadline_in(timeout));
-  channels_->events->keep_messages();
+  channels_->events.emplace(channels_->context, events, deadline_after(timeout));
+  channels_->events->store_messages();
 }
 
 LinkOutcome ServiceLink::exchange(const std::string& message,
                                   std::chrono::nanoseconds timeout) noexcept {
   try {
     Channels& channels = *channels_;
-    const Clock::time_point deadline = deadline_in(timeout);
-    // Messages since the last exchange were not requested.
+    const Clock::time_point deadline = deadline_after(timeout);
+    // A message received since the last exchange was not requested.
     channels.context.restart();
     channels.context.poll();
-    if (channels.simulation.ended()) return outcome_of(channels.simulation.ended());
-    if (channels.simulation.received() != channels.sent) return LinkOutcome::nonsense;
-    ++channels.sent;
+    if (channels.simulation.end_reason()) return outcome_of(channels.simulation.end_reason());
+    if (channels.simulation.received_count() != channels.expected_answers)
+      return LinkOutcome::nonsense;
+    ++channels.expected_answers;
     const error_code error = channels.simulation.write(message, deadline);
     return error ? outcome_of(error) : channels.wait_for_answer(deadline);
   } catch (const std::exception&) {
@@ -239,8 +245,8 @@ LinkOutcome ServiceLink::exchange(const std::string& message,
 
 void ServiceLink::post(const std::string& message, std::chrono::nanoseconds timeout) noexcept {
   try {
-    ++channels_->sent;
-    (void)channels_->simulation.write(message, deadline_in(timeout));
+    ++channels_->expected_answers;
+    (void)channels_->simulation.write(message, deadline_after(timeout));
   } catch (const std::exception&) {
     // The connection is closed, so there is no force.
   }
@@ -248,7 +254,7 @@ void ServiceLink::post(const std::string& message, std::chrono::nanoseconds time
 
 void ServiceLink::close(std::chrono::nanoseconds timeout) noexcept {
   try {
-    const Clock::time_point deadline = deadline_in(timeout);
+    const Clock::time_point deadline = deadline_after(timeout);
     channels_->simulation.close(deadline);
     if (channels_->events) channels_->events->close(deadline);
   } catch (const std::exception&) {
@@ -261,11 +267,11 @@ const std::string& ServiceLink::answer() const noexcept {
 }
 
 std::vector<std::string> ServiceLink::take_events() {
-  return channels_->events ? channels_->events->take() : std::vector<std::string>();
+  return channels_->events ? channels_->events->take_messages() : std::vector<std::string>();
 }
 
 bool ServiceLink::events_ended() const noexcept {
-  return channels_->events && channels_->events->ended();
+  return channels_->events && channels_->events->end_reason();
 }
 
 }  // namespace touchtrial::device::inverse3

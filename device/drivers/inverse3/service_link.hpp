@@ -1,5 +1,5 @@
 /// \file Connection to Haply's Inverse service: HTTP queries, and the WebSockets of the simulation
-///   and events channels, with timeouts. Only its source uses Boost.Beast.
+///   and events channels, with timeouts.
 #pragma once
 
 #include "core/errors.hpp"
@@ -23,7 +23,7 @@ struct ServiceAddress {
   [[nodiscard]] std::string text() const { return host + ':' + std::to_string(port); }
 };
 
-/// There is no service at the address.
+/// No service answers at the address.
 class NoService : public DeviceError {
  public:
   using DeviceError::DeviceError;
@@ -31,14 +31,14 @@ class NoService : public DeviceError {
 
 /// The answer to an HTTP query.
 struct HttpAnswer {
-  unsigned status = 0;  ///< 200: as asked
+  unsigned status = 0;  ///< HTTP status; 200: success
   std::string body;
 };
 
-/// Sends GET `path`. Blocks for `patience` at most, plus name resolution.
+/// Sends GET `path`. Blocks for at most `timeout`, plus name resolution.
 /// \throws NoService with the remedy if there is no answer
-[[nodiscard]] HttpAnswer ask_service(const ServiceAddress& service, const std::string& path,
-                                     std::chrono::nanoseconds timeout);
+[[nodiscard]] HttpAnswer query_service(const ServiceAddress& service, const std::string& path,
+                                       std::chrono::nanoseconds timeout);
 
 /// The result of an exchange.
 enum class LinkOutcome {
@@ -48,9 +48,9 @@ enum class LinkOutcome {
   nonsense  ///< too large, not text, or more answers than messages
 };
 
-/// The simulation channel and, beside it, the events channel. The service sends exactly one answer
-/// for each message; the link counts them, so that an answer is not mistaken for that to a later
-/// message. Belongs to one thread.
+/// The simulation channel and, optionally, the events channel. The service sends exactly one answer
+/// to each message; the link counts answers, so that a late answer is not mistaken for the answer
+/// to a later message. Belongs to one thread.
 class ServiceLink {
  public:
   /// Connects, and waits for the inventory, which the service sends first.
@@ -67,14 +67,14 @@ class ServiceLink {
   /// Sends a message and waits for its answer.
   [[nodiscard]] LinkOutcome exchange(const std::string& message,
                                      std::chrono::nanoseconds timeout) noexcept;
-  /// Sends a message and does not wait for the answer, before `close`.
+  /// Sends a message without waiting for the answer; only before `close`.
   void post(const std::string& message, std::chrono::nanoseconds timeout) noexcept;
   /// Closes the connection properly.
   void close(std::chrono::nanoseconds timeout) noexcept;
 
-  /// The newest answer, at first the inventory.
+  /// \return the newest answer, initially the inventory
   [[nodiscard]] const std::string& answer() const noexcept;
-  /// \return events since the last call, at most some hundreds, oldest first
+  /// \return at most some hundred events since the last call, oldest first
   [[nodiscard]] std::vector<std::string> take_events();
   /// \return whether the events channel was opened and has ended
   [[nodiscard]] bool events_ended() const noexcept;

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The profile name of this program in Haply Hub, which stores settings for it.
+/// This program's profile name in Haply Hub, which stores settings by profile.
 constexpr const char* kProfile = "touchtrial";
 
 json parsed_object(std::string_view text) {
@@ -21,7 +21,7 @@ json parsed_object(std::string_view text) {
   return value;
 }
 
-/// Some answers are wrapped as {"ok": true, "data": ...}.
+/// \return the data of an answer that may be wrapped as {"ok": true, "data": ...}
 json content_of(std::string_view text) {
   json value = parsed_object(text);
   const auto data = value.find("data");
@@ -64,8 +64,8 @@ double number_in(const json& object, const char* key) {
 
 std::optional<std::int64_t> whole_number_in(const json& object, const char* key) {
   const auto found = object.find(key);
-  const bool whole = found != object.end() && found->is_number_integer();
-  return whole ? std::optional(found->get<std::int64_t>()) : std::nullopt;
+  const bool is_integer = found != object.end() && found->is_number_integer();
+  return is_integer ? std::optional(found->get<std::int64_t>()) : std::nullopt;
 }
 
 Vec3 vec3_in(const json& object, const char* key) {
@@ -78,7 +78,7 @@ ArmStatus status_of(const json& status) {
           bool_in(status, "ready"), bool_in(status, "started")};
 }
 
-/// \return the largest magnitude of a damping's numbers: a scalar, and a vector that may be missing
+/// \return the largest magnitude of the scalar and, if present, the vector of a damping
 double damping_of(const json& damping) {
   double largest = std::abs(number_in(damping, "scalar"));
   if (!damping.contains("vector")) return largest;
@@ -107,51 +107,51 @@ bool is_enabled(const json& setting) {
 }
 
 DeviceConfig config_of(const json& config) {
-  DeviceConfig read;
-  if (const std::string type = text_in(config, "type"); !type.empty()) read.type = type;
-  read.firmware = firmware_of(config);
-  read.preset = text_in(config, "preset");
+  DeviceConfig result;
+  if (const std::string type = text_in(config, "type"); !type.empty()) result.type = type;
+  result.firmware = firmware_of(config);
+  result.preset = text_in(config, "preset");
   if (const json* const filters = object_in(config, "filters")) {
-    read.force_gate = number_in(member_of(*filters, "force_gate"), "gain");
-    read.damping = damping_of(member_of(*filters, "damping"));
+    result.force_gate = number_in(member_of(*filters, "force_gate"), "gain");
+    result.damping = damping_of(member_of(*filters, "damping"));
   }
   if (const json* const torque = object_in(config, "torque_scaling")) {
-    read.torque_scaling = bool_in(*torque, "enabled");
+    result.torque_scaling = bool_in(*torque, "enabled");
   }
   if (const json* const gravity = object_in(config, "gravity_compensation")) {
-    read.gravity_compensation =
+    result.gravity_compensation =
         bool_in(*gravity, "enabled") ? number_in(*gravity, "scaling_factor") : 0.0;
   }
-  read.handedness = text_in(config, "handedness");
-  if (config.contains("home_return")) read.home_return = is_enabled(config.at("home_return"));
+  result.handedness = text_in(config, "handedness");
+  if (config.contains("home_return")) result.home_return = is_enabled(config.at("home_return"));
   if (const json* const basis = object_in(config, "basis")) {
-    read.plain_frame = text_in(*basis, "permutation") == "XYZ";
+    result.plain_frame = text_in(*basis, "permutation") == "XYZ";
   }
   if (const json* const mount = object_in(config, "mount")) {
-    read.plain_frame = read.plain_frame && has_unit_scale(*mount);
+    result.plain_frame = result.plain_frame && has_unit_scale(*mount);
   }
-  return read;
+  return result;
 }
 
 DeviceReport device_of(const json& device) {
-  DeviceReport read;
-  read.id = text_in(device, "device_id");
-  if (read.id.empty()) throw BadMessage("no device_id");
+  DeviceReport result;
+  result.id = text_in(device, "device_id");
+  if (result.id.empty()) throw BadMessage("no device_id");
   const json& state = member_of(device, "state");
-  read.position_m = vec3_in(state, "cursor_position");
-  read.velocity_m_s = vec3_in(state, "cursor_velocity");
+  result.position_m = vec3_in(state, "cursor_position");
+  result.velocity_m_s = vec3_in(state, "cursor_velocity");
   if (state.contains("current_cursor_force")) {
-    read.delivered_n = vec3_in(state, "current_cursor_force");
+    result.delivered_n = vec3_in(state, "current_cursor_force");
   }
-  if (device.contains("status")) read.status = status_of(device.at("status"));
-  if (const json* const config = object_in(device, "config")) read.config = config_of(*config);
-  if (const json* const transform = object_in(state, "transform"); transform && read.config) {
-    read.config->plain_frame = read.config->plain_frame && has_unit_scale(*transform);
+  if (device.contains("status")) result.status = status_of(device.at("status"));
+  if (const json* const config = object_in(device, "config")) result.config = config_of(*config);
+  if (const json* const transform = object_in(state, "transform"); transform && result.config) {
+    result.config->plain_frame = result.config->plain_frame && has_unit_scale(*transform);
   }
-  return read;
+  return result;
 }
 
-std::uint32_t pressed_in(const json& state) {
+std::uint32_t pressed_buttons(const json& state) {
   if (const json* const buttons = object_in(state, "buttons")) {
     std::uint32_t bits = 0;
     for (const auto& [key, bit] : {std::pair("a", 1U), std::pair("b", 2U), std::pair("c", 4U)}) {
@@ -160,22 +160,23 @@ std::uint32_t pressed_in(const json& state) {
     }
     return bits;
   }
-  const auto only = state.find("button");
-  return only != state.end() && *only == true ? 1U : 0U;
+  const auto button = state.find("button");
+  return button != state.end() && *button == true ? 1U : 0U;
 }
 
-/// Only buttons of grips are used, so malformed grips are ignored.
+/// Malformed grips are ignored, because only their buttons are used.
 std::uint32_t buttons_of(const json& report) {
   for (const char* const family : {"wireless_verse_grip", "verse_grip"}) {
     const auto grips = report.find(family);
     if (grips == report.end() || !grips->is_array() || grips->empty()) continue;
     if (!grips->front().is_object()) continue;
-    if (const json* const state = object_in(grips->front(), "state")) return pressed_in(*state);
+    if (const json* const state = object_in(grips->front(), "state"))
+      return pressed_buttons(*state);
   }
   return 0;
 }
 
-json command(const ServiceVersion& version, const std::string& device, Vec3 force_n) {
+json device_command(const ServiceVersion& version, const std::string& device, Vec3 force_n) {
   // Up to 3.4 a force's coordinates are named "values".
   const char* const key = version.has_filters() ? "vector" : "values";
   return {
@@ -184,7 +185,7 @@ json command(const ServiceVersion& version, const std::string& device, Vec3 forc
        {{"set_cursor_force", {{key, {{"x", force_n.x}, {"y", force_n.y}, {"z", force_n.z}}}}}}}};
 }
 
-std::string dumped(json message, json device) {
+std::string message_text(json message, json device) {
   message["inverse3"] = json::array();
   message["inverse3"].push_back(std::move(device));
   return message.dump();
@@ -192,21 +193,21 @@ std::string dumped(json message, json device) {
 
 }  // namespace
 
-ServiceVersion version_in(std::string_view text) {
+ServiceVersion parse_version(std::string_view text) {
   const json content = content_of(text);
   std::string version = text_in(content, "project_version");
   if (version.empty()) version = text_in(content, "git_tag");
-  ServiceVersion read;
+  ServiceVersion result;
   const char* const end = version.data() + version.size();
-  const auto major = std::from_chars(version.data(), end, read.major);
+  const auto major = std::from_chars(version.data(), end, result.major);
   if (major.ec != std::errc() || major.ptr == end || *major.ptr != '.' ||
-      std::from_chars(major.ptr + 1, end, read.minor).ec != std::errc()) {
+      std::from_chars(major.ptr + 1, end, result.minor).ec != std::errc()) {
     throw BadMessage("no version");
   }
-  return read;
+  return result;
 }
 
-ServiceReport report_in(std::string_view text) {
+ServiceReport parse_report(std::string_view text) {
   const json content = content_of(text);
   ServiceReport report;
   report.session_id = whole_number_in(content, "session_id");
@@ -222,11 +223,11 @@ ServiceReport report_in(std::string_view text) {
   return report;
 }
 
-bool home_return_in(std::string_view text) {
+bool parse_home_return(std::string_view text) {
   return is_enabled(content_of(text));
 }
 
-std::vector<std::string> sessions_in(std::string_view text) {
+std::vector<std::string> parse_sessions(std::string_view text) {
   const json content = content_of(text);
   const json& sessions = member_of(content, "sessions");
   if (!sessions.is_array()) throw BadMessage("sessions is not a list");
@@ -238,7 +239,7 @@ std::vector<std::string> sessions_in(std::string_view text) {
   return names;
 }
 
-ServiceEvent event_in(std::string_view text) {
+ServiceEvent parse_event(std::string_view text) {
   const json content = parsed_object(text);
   ServiceEvent event;
   event.name = text_in(content, "name");
@@ -254,25 +255,25 @@ ServiceEvent event_in(std::string_view text) {
 
 std::string first_message(const ServiceVersion& version, const std::string& device) {
   json message = json::object();
-  json about = command(version, device, {});
+  json device_message = device_command(version, device, {});
   if (version.has_filters()) {
     message["session"]["configure"]["profile"]["name"] = kProfile;
-    about["configure"] = {
+    device_message["configure"] = {
         {"preset", {{"preset", kCentredPreset}}},
         {"force_gate", {{"gain", 0.0}}},
         {"damping", {{"scalar", 0.0}, {"vector", {{"x", 0.0}, {"y", 0.0}, {"z", 0.0}}}}}};
   }
-  return dumped(std::move(message), std::move(about));
+  return message_text(std::move(message), std::move(device_message));
 }
 
 std::string inventory_request(const ServiceVersion& version, const std::string& device) {
   json message = json::object();
   message["session"]["force_render_full_state"] = json::object();
-  return dumped(std::move(message), command(version, device, {}));
+  return message_text(std::move(message), device_command(version, device, {}));
 }
 
 std::string force_message(const ServiceVersion& version, const std::string& device, Vec3 force_n) {
-  return dumped(json::object(), command(version, device, force_n));
+  return message_text(json::object(), device_command(version, device, force_n));
 }
 
 }  // namespace touchtrial::device::inverse3

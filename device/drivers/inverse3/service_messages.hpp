@@ -16,7 +16,7 @@ namespace touchtrial::device::inverse3 {
 /// The requested frame: its origin is the middle of the workspace.
 inline constexpr const char* kCentredPreset = "arm_front_centered";
 
-/// A message that violates the documentation. `what()` describes how.
+/// A message that does not match the documentation; `what()` describes the difference.
 class BadMessage : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -26,15 +26,15 @@ struct ServiceVersion {
   int major = 0;
   int minor = 0;
 
-  /// 3.5 and later 3.x: presets, filters and sessions can be set and read.
+  /// Whether presets, filters and sessions can be set and read: from 3.5 on.
   [[nodiscard]] bool has_filters() const noexcept { return major == 3 && minor >= 5; }
-  [[nodiscard]] bool is_known() const noexcept { return major == 3 && minor >= 1; }
+  [[nodiscard]] bool is_supported() const noexcept { return major == 3 && minor >= 1; }
   [[nodiscard]] std::string text() const {
     return std::to_string(major) + '.' + std::to_string(minor);
   }
 };
 
-/// The conditions for using a device.
+/// The state of an arm.
 struct ArmStatus {
   bool calibrated = false;
   bool in_use = false;
@@ -88,27 +88,27 @@ struct ServiceEvent {
   std::optional<std::int64_t> session_id;
 };
 
-/// \name Messages of the service
+/// \name Messages from the service
 ///@{
 /// \throws BadMessage
-[[nodiscard]] ServiceVersion version_in(std::string_view text);
-/// An inventory or a state, which have the same format.
+[[nodiscard]] ServiceVersion parse_version(std::string_view text);
+/// Parses an inventory or a state, which have the same format.
 /// \throws BadMessage
-[[nodiscard]] ServiceReport report_in(std::string_view text);
-/// The answer about the device's home return.
+[[nodiscard]] ServiceReport parse_report(std::string_view text);
+/// Parses the answer about the device's home return.
 /// \throws BadMessage
-[[nodiscard]] bool home_return_in(std::string_view text);
-/// \return the number of sessions of the service, and their profile names if it reports them
+[[nodiscard]] bool parse_home_return(std::string_view text);
+/// \return the profile name of each session of the service; empty if not reported
 /// \throws BadMessage
-[[nodiscard]] std::vector<std::string> sessions_in(std::string_view text);
+[[nodiscard]] std::vector<std::string> parse_sessions(std::string_view text);
 /// \throws BadMessage
-[[nodiscard]] ServiceEvent event_in(std::string_view text);
+[[nodiscard]] ServiceEvent parse_event(std::string_view text);
 ///@}
 
 /// \name Messages to the service
-/// @{ The first message: our profile, the frame, filters off, no force.
+/// @{ The first message: the program's profile, the frame, filters off, no force.
 [[nodiscard]] std::string first_message(const ServiceVersion& version, const std::string& device);
-/// Asks for the device's configuration; no force.
+/// Requests the device's configuration; no force.
 [[nodiscard]] std::string inventory_request(const ServiceVersion& version,
                                             const std::string& device);
 /// \param force_n  on the hand, in the service's frame; applies to this message only

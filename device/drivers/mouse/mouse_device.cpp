@@ -11,28 +11,28 @@
 namespace touchtrial::device {
 namespace {
 
-/// Mass and damping of hand and stylus across the plane: 0.1 kg in N s^2/mm, and near critical
-/// damping on the usual wall of 0.4 N/mm.
+/// Mass of hand and stylus normal to the plane: 0.1 kg in N s^2/mm.
 constexpr double kMass = 1e-4;
+/// Nearly critical on the usual wall of 0.4 N/mm.
 constexpr double kDamping_n_s_per_mm = 0.012;
 constexpr double kHoverStiffness_n_per_mm = 0.4;
-/// Prevents a servo that stalled from throwing the hand when it continues.
+/// Limits the motion after a stall of the servo.
 constexpr ServoClock::Time kMaxStep = std::chrono::milliseconds(20);
-constexpr double kFinestStepS = 0.001;
-/// The device is not read between planes, so an old position of the hand is discarded.
-constexpr ServoClock::Time kUnread = std::chrono::milliseconds(200);
+constexpr double kMaxSubstepS = 0.001;
+/// After a longer pause, as between planes, the hand starts again above the plane.
+constexpr ServoClock::Time kMaxReadPause = std::chrono::milliseconds(200);
 
 double seconds(ServoClock::Time time) noexcept {
   return std::chrono::duration<double>(time).count();
 }
 
-/// \return the vector, shortened to a maximum length
-Vec2 limited(Vec2 vector, double max) noexcept {
+/// \return the vector, scaled down to `max` if it is longer
+Vec2 clamp_length(Vec2 vector, double max) noexcept {
   const double length = norm(vector);
   return length > max ? (max / length) * vector : vector;
 }
 
-double smooth(double share) noexcept {
+double smooth_step(double share) noexcept {
   return share * share * (3.0 - 2.0 * share);
 }
 
@@ -45,7 +45,7 @@ void check(const MouseOptions& o) {
   }
 }
 
-std::string variable(const char* name) {
+std::string environment_value(const char* name) {
   const char* value = std::getenv(name);
   return value == nullptr ? "" : value;
 }
@@ -53,8 +53,8 @@ std::string variable(const char* name) {
 std::vector<DeviceListing> list_mouse(const DeviceSettings&) {
   DeviceListing listing;
   listing.driver = kMouseDriver;
-  const std::string wayland = variable("WAYLAND_DISPLAY");
-  listing.where = wayland.empty() ? variable("DISPLAY") : wayland;
+  const std::string wayland = environment_value("WAYLAND_DISPLAY");
+  listing.where = wayland.empty() ? environment_value("DISPLAY") : wayland;
   listing.present = !listing.where.empty();
   if (listing.present) {
     listing.model = "pointer on a screen";
@@ -67,8 +67,8 @@ std::vector<DeviceListing> list_mouse(const DeviceSettings&) {
 
 std::unique_ptr<HapticDevice> refuse_without_window(const DeviceSettings&) {
   throw DeviceError(
-      "mouse: it moves in a participant's window, which this command does not open; try it in a "
-      "session, with touchtrial run STUDY --db pilot.db --device mouse --pilot");
+      "mouse: needs a participant's window, which this command does not open; try it in a session, "
+      "with touchtrial run STUDY --db pilot.db --device mouse --pilot");
 }
 
 }  // namespace
@@ -77,8 +77,8 @@ MouseDevice::MouseDevice(PointerSource& pointer, ServoClock& clock, const MouseO
     : pointer_(pointer),
       clock_(clock),
       options_(options),
-      followed_(options.pointer_time_s),
-      displaced_(options.pull_time_s),
+      smoothed_(options.pointer_time_s),
+      displacement_(options.pull_time_s),
       height_mm_(options.hover_mm) {
   check(options);
 }
@@ -99,41 +99,41 @@ DeviceFault MouseDevice::fault() const noexcept {
 DeviceStatus MouseDevice::read(DeviceSample& sample) noexcept {
   const ServoClock::Time now = clock_.now();
   const double step_s = readings_ == 0 ? 0.0 : seconds(std::clamp(now - last_read_, {}, kMaxStep));
-  if (readings_ > 0 && now - last_read_ > kUnread) lift();
+  if (readings_ > 0 && now - last_read_ > kMaxReadPause) raise_hand();
   last_read_ = now;
-  look_at(pointer_.newest(), now);
+  update_pointer(pointer_.newest(), now);
   move(step_s);
-  const Vec2 place = followed_.value() + displaced_.value();
-  const Vec2 speed = followed_.rate_per_s() + displaced_.rate_per_s();
-  sample.position_mm = {place.x, place.y, height_mm_};
-  sample.velocity_mm_s = {speed.x, speed.y, rise_mm_s_};
+  const Vec2 position_mm = smoothed_.value() + displacement_.value();
+  const Vec2 velocity_mm_s = smoothed_.rate_per_s() + displacement_.rate_per_s();
+  sample.position_mm = {position_mm.x, position_mm.y, height_mm_};
+  sample.velocity_mm_s = {velocity_mm_s.x, velocity_mm_s.y, rise_mm_s_};
   sample.sequence = ++readings_;
-  sample.buttons = seen_.pressed ? 1U : 0U;
-  sample.ready = seen_.sequence > 0;
-  pointer_.show({place, readings_});
-  return seen_.closed ? DeviceStatus::fault : DeviceStatus::ok;
+  sample.buttons = pointer_state_.pressed ? 1U : 0U;
+  sample.ready = pointer_state_.sequence > 0;
+  pointer_.show({position_mm, readings_});
+  return pointer_state_.closed ? DeviceStatus::fault : DeviceStatus::ok;
 }
 
 DeviceStatus MouseDevice::write(Vec3 force_n) noexcept {
-  const bool passes = !halted_.load(std::memory_order_acquire) && is_finite(force_n);
-  force_n_ = passes ? force_n : Vec3{};
-  return seen_.closed ? DeviceStatus::fault : DeviceStatus::ok;
+  const bool is_accepted = !halted_.load(std::memory_order_acquire) && is_finite(force_n);
+  force_n_ = is_accepted ? force_n : Vec3{};
+  return pointer_state_.closed ? DeviceStatus::fault : DeviceStatus::ok;
 }
 
-void MouseDevice::look_at(const PointerState& pointer, ServoClock::Time now) noexcept {
-  if (pointer.sequence != seen_.sequence) news_at_ = now;
-  if (seen_.sequence == 0) {
+void MouseDevice::update_pointer(const PointerState& pointer, ServoClock::Time now) noexcept {
+  if (pointer.sequence != pointer_state_.sequence) last_change_ = now;
+  if (pointer_state_.sequence == 0) {
     // The hand starts at the first position of the pointer.
     hand_mm_ = pointer.position_mm;
-    followed_.reset(hand_mm_);
+    smoothed_.reset(hand_mm_);
   }
-  seen_ = pointer;
+  pointer_state_ = pointer;
   if (pointer.closed) closed_.store(true, std::memory_order_release);
-  pressed_ = pointer.pressed && !pointer.closed && now - news_at_ < kTimeout &&
-             !halted_.load(std::memory_order_acquire);
+  is_pressed_ = pointer.pressed && !pointer.closed && now - last_change_ < kTimeout &&
+                !halted_.load(std::memory_order_acquire);
 }
 
-void MouseDevice::lift() noexcept {
+void MouseDevice::raise_hand() noexcept {
   push_share_ = 0.0;
   force_n_ = {};
   height_mm_ = options_.hover_mm;
@@ -141,22 +141,23 @@ void MouseDevice::lift() noexcept {
 }
 
 void MouseDevice::move(double step_s) noexcept {
-  hand_mm_ = hand_mm_ + limited(seen_.position_mm - hand_mm_, options_.max_speed_mm_s * step_s);
-  followed_.step(hand_mm_, step_s);
-  const Vec2 pull_n = limited({force_n_.x, force_n_.y}, options_.max_pull_n);
-  displaced_.step((1.0 / options_.pull_n_per_mm) * pull_n, step_s);
-  const int parts = std::max(1, static_cast<int>(std::ceil(step_s / kFinestStepS)));
-  for (int part = 0; part < parts; ++part) move_across(step_s / parts, force_n_.z);
+  hand_mm_ = hand_mm_ +
+             clamp_length(pointer_state_.position_mm - hand_mm_, options_.max_speed_mm_s * step_s);
+  smoothed_.step(hand_mm_, step_s);
+  const Vec2 pull_n = clamp_length({force_n_.x, force_n_.y}, options_.max_pull_n);
+  displacement_.step((1.0 / options_.pull_n_per_mm) * pull_n, step_s);
+  const int substeps = std::max(1, static_cast<int>(std::ceil(step_s / kMaxSubstepS)));
+  for (int part = 0; part < substeps; ++part) move_vertically(step_s / substeps, force_n_.z);
 }
 
-void MouseDevice::move_across(double step_s, double normal_force_n) noexcept {
+void MouseDevice::move_vertically(double step_s, double normal_force_n) noexcept {
   const double change = step_s / options_.push_time_s;
-  push_share_ = std::clamp(push_share_ + (pressed_ ? change : -change), 0.0, 1.0);
-  const double pushing = smooth(push_share_);
-  const double back_n = std::clamp(kHoverStiffness_n_per_mm * (options_.hover_mm - height_mm_),
-                                   -options_.push_n, options_.push_n);
-  const double hand_n = (1.0 - pushing) * back_n - pushing * options_.push_n;
-  // Semi-implicit Euler, the damper fully implicit.
+  push_share_ = std::clamp(push_share_ + (is_pressed_ ? change : -change), 0.0, 1.0);
+  const double push_weight = smooth_step(push_share_);
+  const double hover_n = std::clamp(kHoverStiffness_n_per_mm * (options_.hover_mm - height_mm_),
+                                    -options_.push_n, options_.push_n);
+  const double hand_n = (1.0 - push_weight) * hover_n - push_weight * options_.push_n;
+  // Semi-implicit Euler, with a fully implicit damper.
   rise_mm_s_ = (rise_mm_s_ + step_s / kMass * (normal_force_n + hand_n)) /
                (1.0 + step_s / kMass * kDamping_n_s_per_mm);
   const double next_mm = height_mm_ + step_s * rise_mm_s_;

@@ -1,5 +1,5 @@
-/// \file The exchange of the pointer's state, from the owner of a window to the mouse device, and
-///   of the stylus' state in the other direction. Independent of any window library.
+/// \file Passes the pointer's state from a window to the mouse device, and the stylus' state back.
+///   Independent of any window library.
 #pragma once
 
 #include "core/vec.hpp"
@@ -14,12 +14,12 @@ struct PointerState {
   Vec2 position_mm;      ///< on the plane, from its top-left corner
   bool pressed = false;  ///< the button is held
   bool closed = false;   ///< the window was closed
-  /// Counts the window's iterations, whether or not the pointer has moved; 0: none yet. A constant
+  /// Counts the window's iterations, even if the pointer has not moved; 0: none yet. A constant
   /// number means that the window hangs.
   std::uint64_t sequence = 0;
 };
 
-/// The state that the window draws instead of the pointer.
+/// The stylus, which the window draws instead of the pointer.
 struct StylusState {
   Vec2 position_mm;
   std::uint64_t sequence = 0;  ///< counts the device's readings; 0: none yet
@@ -34,7 +34,7 @@ class PointerSource {
   virtual void show(const StylusState& stylus) noexcept = 0;
 };
 
-/// The PointerSource of all windows: neither thread ever blocks the other.
+/// The PointerSource for windows. Neither thread ever blocks the other.
 class PointerExchange final : public PointerSource {
  public:
   /// \name Servo thread
@@ -44,8 +44,8 @@ class PointerExchange final : public PointerSource {
   ///@}
 
   /// \name Window's thread
-  /// @{ Call it once per iteration, whether or not the pointer has moved; it numbers the states
-  /// itself.
+  /// @{ Numbers a state and passes it to the servo. Call it once per iteration, even if the pointer
+  /// has not moved.
   void publish(PointerState pointer) noexcept {
     pointer.sequence = ++published_;
     pointers_.set(pointer);

@@ -10,7 +10,7 @@
 namespace touchtrial::device::hd {
 namespace {
 
-/// More errors than any stack holds, to terminate even if the library never runs out of errors.
+/// A bound, in case the library never runs out of errors.
 constexpr int kMaxErrors = 256;
 
 DeviceFault fault_of(std::uint32_t code) noexcept {
@@ -35,7 +35,7 @@ constexpr std::int64_t kTicksBetweenTemperatures = 100;
 constexpr std::int64_t kTicksBetweenCalibrations = 100;
 
 /// The action that a calibration style requires of a person.
-DeviceReadiness need_of(int style) noexcept {
+DeviceReadiness required_action_of(int style) noexcept {
   switch (style) {
     case kStyleEncoderReset:
       return DeviceReadiness::needs_reset;
@@ -85,30 +85,32 @@ Errors drain_errors(const Api& api) noexcept {
     const std::uint32_t code = api.get_error().code;
     if (code == 0) break;
     errors.oldest = code;
-    const bool telling = errors.fault != DeviceFault::none && errors.fault != DeviceFault::driver;
-    if (!telling) errors.fault = fault_of(code);
+    const bool is_specific =
+        errors.fault != DeviceFault::none && errors.fault != DeviceFault::driver;
+    if (!is_specific) errors.fault = fault_of(code);
   }
   return errors;
 }
 
 std::uint32_t Loop::callback(void* loop) noexcept {
-  return static_cast<Loop*>(loop)->enter();
+  return static_cast<Loop*>(loop)->run_callback();
 }
 
-/// Sets `inside_` before it reads `closed_`, while `close` sets `closed_` before it reads
-/// `inside_`: with sequentially consistent atomics at least one of the two sees the other.
-std::uint32_t Loop::enter() noexcept {
-  inside_.store(true);
-  const bool closed = closed_.load();
-  if (!closed) tick();
-  inside_.store(false);
-  return closed ? kCallbackDone : kCallbackContinue;
+/// Sets `in_callback_` before it reads `closed_`, while `close` sets `closed_` before it reads
+/// `in_callback_`: with sequentially consistent atomics at least one of them sees the other's
+/// value.
+std::uint32_t Loop::run_callback() noexcept {
+  in_callback_.store(true);
+  const bool is_closed = closed_.load();
+  if (!is_closed) tick();
+  in_callback_.store(false);
+  return is_closed ? kCallbackDone : kCallbackContinue;
 }
 
-bool Loop::close(std::chrono::milliseconds patience) noexcept {
+bool Loop::close(std::chrono::milliseconds timeout) noexcept {
   closed_.store(true);
-  for (auto waited = std::chrono::milliseconds(0); inside_.load(); ++waited) {
-    if (waited >= patience) return false;
+  for (auto waited = std::chrono::milliseconds(0); in_callback_.load(); ++waited) {
+    if (waited >= timeout) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   return true;
@@ -123,7 +125,7 @@ void Loop::tick() noexcept {
   ++tick_;
 }
 
-/// A calibrated device keeps a valid position while a calibration update is pending.
+/// The position of a calibrated device stays valid while a calibration update is pending.
 void Loop::check_calibration() noexcept {
   const Enum state = api_.check_calibration();
   if (state == kCalibrationOk) is_calibrated_ = true;
@@ -134,15 +136,16 @@ void Loop::check_calibration() noexcept {
     const DeviceFault fault = drain_errors(api_).fault;
     if (fault != DeviceFault::none && fault != DeviceFault::driver) link_.fail(fault);
   }
-  readiness_.store(is_calibrated_ ? DeviceReadiness::ready : need_of(options_.calibration_style),
-                   std::memory_order_release);
+  readiness_.store(
+      is_calibrated_ ? DeviceReadiness::ready : required_action_of(options_.calibration_style),
+      std::memory_order_release);
 }
 
-/// An update moves the origin. A reset defines the arm's current position as the reset position, so
-/// a person must request it; other updates wait until no servo renders forces.
+/// An update moves the origin, so it waits until no servo renders forces. A reset makes the arm's
+/// current position the reset position, so a person must request it.
 bool Loop::is_update_due(Enum state) noexcept {
-  const bool is_asked = reset_asked_.exchange(false, std::memory_order_acq_rel);
-  if (options_.calibration_style == kStyleEncoderReset) return is_asked && !is_calibrated_;
+  const bool is_requested = reset_requested_.exchange(false, std::memory_order_acq_rel);
+  if (options_.calibration_style == kStyleEncoderReset) return is_requested && !is_calibrated_;
   idle_ticks_ = link_.live_force(monotonic_now()) ? 0 : idle_ticks_ + 1;
   return options_.calibration_style != 0 && state == kCalibrationNeedsUpdate &&
          tick_ % kTicksBetweenCalibrations == 0 &&
@@ -153,7 +156,7 @@ void Loop::run_frame() noexcept {
   api_.begin_frame(device_);
   DeviceSample sample = read_sample();
   sample.ready = is_calibrated_;
-  if (tick_ % kTicksBetweenTemperatures == 0) watch_temperature();
+  if (tick_ % kTicksBetweenTemperatures == 0) check_temperature();
   if (!is_finite(sample.position_mm) || !is_finite(sample.velocity_mm_s)) {
     link_.fail(DeviceFault::bad_data);
   } else {
@@ -174,21 +177,22 @@ DeviceSample Loop::read_sample() noexcept {
   return {vec_from(position), vec_from(velocity), 0, static_cast<std::uint32_t>(buttons)};
 }
 
-void Loop::watch_temperature() noexcept {
+void Loop::check_temperature() noexcept {
   if (!options_.has_motor_temperature) return;
-  std::array<double, 6> warmth{};
-  api_.get_doublev(kMotorTemperature, warmth.data());
-  const bool warm =
-      std::any_of(warmth.begin(), warmth.end(), [](double motor) { return motor > kWarmestMotor; });
-  if (warm) link_.fail(DeviceFault::warm_motors);
+  std::array<double, 6> temperatures{};
+  api_.get_doublev(kMotorTemperature, temperatures.data());
+  const bool is_warm = std::any_of(temperatures.begin(), temperatures.end(),
+                                   [](double motor) { return motor > kMaxMotorTemperature; });
+  if (is_warm) link_.fail(DeviceFault::warm_motors);
 }
 
 void Loop::send(Vec3 force_n) noexcept {
   const std::array<double, 3> force = {force_n.x, force_n.y, force_n.z};
   api_.set_doublev(kCurrentForce, force.data());
-  const bool zero = force_n == Vec3{};
-  zeros_sent_.store(zero ? std::min(zeros_sent_.load(std::memory_order_relaxed) + 1, 1'000'000) : 0,
-                    std::memory_order_release);
+  const bool is_zero = force_n == Vec3{};
+  zeros_sent_.store(
+      is_zero ? std::min(zeros_sent_.load(std::memory_order_relaxed) + 1, 1'000'000) : 0,
+      std::memory_order_release);
 }
 
 }  // namespace touchtrial::device::hd

@@ -1,6 +1,6 @@
-/// \file The part of the OpenHaptics device API (HDAPI) that the driver uses, declared from its
-///   public documentation, so that the vendor's kit is not needed to build; and the callback that
-///   the vendor's scheduler thread runs once a tick.
+/// \file The callback that the vendor's scheduler thread runs once per tick. The functions of the
+///   OpenHaptics device API (HDAPI) that the driver uses are declared here from the public
+///   documentation, so that a build does not need the vendor's SDK.
 #pragma once
 
 #include "device/drivers/device_link.hpp"
@@ -40,13 +40,13 @@ constexpr Enum kModel = 0x2501;
 constexpr Enum kVendor = 0x2503;
 constexpr Enum kSerial = 0x2504;
 constexpr Enum kFirmware = 0x2505;
-constexpr Enum kMaxWorkspace = 0x2550;     ///< 6 doubles, mm: least x, y, z, greatest x, y, z
-constexpr Enum kUsableWorkspace = 0x2551;  ///< the same, where forces are rendered reliably
+constexpr Enum kMaxWorkspace = 0x2550;     ///< 6 doubles, mm: min x, y, z, max x, y, z
+constexpr Enum kUsableWorkspace = 0x2551;  ///< the same, limited to reliable forces
 constexpr Enum kCalibrationStyles = 0x2555;
 constexpr Enum kMaxStiffness = 0x2602;      ///< nominal, N/mm
 constexpr Enum kMaxForce = 0x2603;          ///< nominal, N
 constexpr Enum kContinuousForce = 0x2604;   ///< nominal, N
-constexpr Enum kMotorTemperature = 0x2605;  ///< 6 doubles: 0 cold, 1 as warm as a motor may get
+constexpr Enum kMotorTemperature = 0x2605;  ///< 6 doubles: 0 cold, 1 maximum
 constexpr Enum kMaxDamping = 0x2609;        ///< nominal, N s/mm
 constexpr Enum kCurrentForce = 0x2700;      ///< 3 doubles, N
 
@@ -58,19 +58,18 @@ constexpr Enum kForceRamping = 0x4002;
 /// States of calibration, and bits of its styles.
 constexpr Enum kCalibrationOk = 0x5000;
 constexpr Enum kCalibrationNeedsUpdate = 0x5001;
-constexpr int kStyleEncoderReset =
-    1;                            ///< a person puts the arm at a known position and confirms it
-constexpr int kStyleAuto = 2;     ///< the device calibrates itself while it is moved
-constexpr int kStyleInkwell = 4;  ///< the stylus lies in its inkwell
+constexpr int kStyleEncoderReset = 1;  ///< a person confirms that the arm is at a known position
+constexpr int kStyleAuto = 2;          ///< the device calibrates itself while it is moved
+constexpr int kStyleInkwell = 4;       ///< the stylus is in its inkwell
 
-/// Errors with a DeviceFault of their own; all others are DeviceFault::driver.
+/// Errors with a specific DeviceFault; all others are DeviceFault::driver.
 constexpr std::uint32_t kWarmMotors = 0x200;
 constexpr std::uint32_t kExceededForce = 0x201;
 constexpr std::uint32_t kExceededImpulse = 0x202;
 constexpr std::uint32_t kExceededVelocity = 0x203;
 constexpr std::uint32_t kCommunicationError = 0x302;
 
-/// The functions, hdInitDevice as init_device and so on.
+/// The library's functions: init_device is hdInitDevice, and so on.
 struct Api {
   Handle (*init_device)(const char*);
   void (*disable_device)(Handle);
@@ -99,27 +98,27 @@ struct Api {
 
 /// The summary of a drained error stack.
 struct Errors {
-  std::uint32_t oldest = 0;  ///< code; 0: there was none
-  /// The most specific error: a warm motor rather than the frame that failed because of it.
+  std::uint32_t oldest = 0;  ///< code; 0: no error
+  /// The most specific error: a warm motor rather than the resulting failed frame.
   DeviceFault fault = DeviceFault::none;
 };
 
-/// Pops all errors. No heap, lock or I/O on our side.
+/// Pops all errors, without heap, lock or I/O in this function.
 [[nodiscard]] Errors drain_errors(const Api& api) noexcept;
 
 /// The device's capabilities, queried when it was opened.
 struct LoopOptions {
   bool has_motor_temperature = false;
-  int calibration_style = kStyleInkwell;  ///< one of the styles, or 0: none is known
+  int calibration_style = kStyleInkwell;  ///< one of the styles; 0: unknown
 };
 
 /// The callback and all data that it uses. Created and destroyed on the thread that opens the
 /// device.
 class Loop {
  public:
-  /// On the vendor's scale from 0 (cold) to 1 (as warm as a motor may get). The library raises an
-  /// error at 1; we stop a little before that, while the motors still obey.
-  static constexpr double kWarmestMotor = 0.95;
+  /// The limit, on the vendor's scale from 0 (cold) to 1 (maximum). The library raises an error at
+  /// 1; the driver stops before that, while the motors still follow commands.
+  static constexpr double kMaxMotorTemperature = 0.95;
 
   Loop(const Api& api, Handle device, const LoopOptions& options) noexcept
       : api_(api), device_(device), options_(options) {}
@@ -132,26 +131,26 @@ class Loop {
   [[nodiscard]] DeviceReadiness readiness() const noexcept {
     return readiness_.load(std::memory_order_acquire);
   }
-  /// As HapticDevice::calibrate. Any thread.
-  void calibrate() noexcept { reset_asked_.store(true, std::memory_order_release); }
-  /// \return the number of latest frames in a row that sent zero
+  /// See HapticDevice::calibrate. May be called from any thread.
+  void calibrate() noexcept { reset_requested_.store(true, std::memory_order_release); }
+  /// \return how many of the latest consecutive frames sent zero
   [[nodiscard]] int zeros_sent() const noexcept {
     return zeros_sent_.load(std::memory_order_acquire);
   }
 
   /// Makes all further callbacks return at once and unschedule themselves.
-  /// \return false if one is still inside the vendor's library after the timeout: this object must
-  ///   then never be destroyed
-  [[nodiscard]] bool close(std::chrono::milliseconds patience) noexcept;
+  /// \return false if a callback is still inside the vendor's library at the timeout: then this
+  ///   object must never be destroyed
+  [[nodiscard]] bool close(std::chrono::milliseconds timeout) noexcept;
 
  private:
-  [[nodiscard]] std::uint32_t enter() noexcept;
+  [[nodiscard]] std::uint32_t run_callback() noexcept;
   void tick() noexcept;
   void check_calibration() noexcept;
   [[nodiscard]] bool is_update_due(Enum state) noexcept;
   void run_frame() noexcept;
   [[nodiscard]] DeviceSample read_sample() noexcept;
-  void watch_temperature() noexcept;
+  void check_temperature() noexcept;
   void send(Vec3 force_n) noexcept;
 
   Api api_;
@@ -160,11 +159,11 @@ class Loop {
   DeviceLink link_;
   std::int64_t tick_ = 0;
   bool is_calibrated_ = false;   ///< the position is valid
-  std::int64_t idle_ticks_ = 0;  ///< latest in a row without a force from a servo
-  std::atomic<bool> reset_asked_{false};
+  std::int64_t idle_ticks_ = 0;  ///< ticks since the last force from a servo
+  std::atomic<bool> reset_requested_{false};
   std::atomic<DeviceReadiness> readiness_{DeviceReadiness::needs_calibration};
   std::atomic<int> zeros_sent_{0};
-  std::atomic<bool> inside_{false};
+  std::atomic<bool> in_callback_{false};
   std::atomic<bool> closed_{false};
 };
 

@@ -12,12 +12,12 @@
 namespace touchtrial::device {
 namespace {
 
-constexpr int kZerosAtTheEnd = 5;
-/// How long a call may delay closing.
+constexpr int kClosingZeros = 5;
+/// How long closing waits for a call to return.
 constexpr std::chrono::seconds kPluginTimeout{2};
 
 /// \throws DeviceError if no plug-in is named, or loading its library crashes
-const std::filesystem::path& expect_loadable(const std::filesystem::path& library) {
+const std::filesystem::path& check_loadable(const std::filesystem::path& library) {
   if (library.empty()) {
     throw DeviceError(
         "plugin: no plug-in is named; name its library in the device settings at plugin.library");
@@ -31,7 +31,7 @@ std::vector<DeviceListing> list_plugins(const DeviceSettings& settings) {
   listing.driver = "plugin";
   listing.where = settings.plugin.library.string();
   try {
-    const plugin::Library library(expect_loadable(settings.plugin.library));
+    const plugin::Library library(check_loadable(settings.plugin.library));
     const DeviceInfo info = plugin::OpenDevice(library, settings.plugin.settings).info();
     listing.model = info.model;
     listing.serial = info.serial;
@@ -43,15 +43,15 @@ std::vector<DeviceListing> list_plugins(const DeviceSettings& settings) {
 }
 
 std::unique_ptr<HapticDevice> open_plugin(const DeviceSettings& settings) {
-  (void)expect_loadable(settings.plugin.library);
+  (void)check_loadable(settings.plugin.library);
   return std::make_unique<PluginDevice>(settings.plugin);
 }
 
 }  // namespace
 
-/// The library, the device, and its thread's loop.
-struct PluginDevice::Running {
-  Running(const PluginSettings& settings, PluginOptions options)
+/// The library, the device, and the loop of its thread.
+struct PluginDevice::Runtime {
+  Runtime(const PluginSettings& settings, PluginOptions options)
       : library(settings.library),
         device(library, settings.settings),
         info(device.info()),
@@ -68,38 +68,38 @@ struct PluginDevice::Running {
       next = std::max(next + period, pace->now());  // no burst after a stall
       tick();
     }
-    for (int i = 0; i < kZerosAtTheEnd; ++i) (void)device.force({});
+    for (int i = 0; i < kClosingZeros; ++i) (void)device.force({});
     (void)device.enable(false);
     pace->end();
   }
 
   void tick() noexcept {
-    if (link.fault() == DeviceFault::none) take_sample();
-    const bool ready = readiness.load(std::memory_order_relaxed) == DeviceReadiness::ready;
-    const std::optional<Vec3> live = ready ? link.live_force(pace->now()) : std::nullopt;
-    enable(live.has_value());
-    note(device.force(live.value_or(Vec3{})));
+    if (link.fault() == DeviceFault::none) update_sample();
+    const bool is_ready = readiness.load(std::memory_order_relaxed) == DeviceReadiness::ready;
+    const std::optional<Vec3> force_n = is_ready ? link.live_force(pace->now()) : std::nullopt;
+    enable(force_n.has_value());
+    report_fault(device.force(force_n.value_or(Vec3{})));
   }
 
-  void take_sample() noexcept {
+  void update_sample() noexcept {
     const plugin::Reading reading = device.sample();
-    note(reading.trouble);
-    if (reading.trouble != plugin::PluginFault::none) return;
+    report_fault(reading.plugin_fault);
+    if (reading.plugin_fault != plugin::PluginFault::none) return;
     readiness.store(reading.readiness, std::memory_order_release);
     if (reading.is_new) link.publish(reading.sample);
   }
 
   void enable(bool on) noexcept {
-    if (on == enabled) return;
-    enabled = on;
-    note(device.enable(on));
+    if (on == is_enabled) return;
+    is_enabled = on;
+    report_fault(device.enable(on));
   }
 
-  void note(plugin::PluginFault found) noexcept {
-    if (found == plugin::PluginFault::none) return;
-    auto none = plugin::PluginFault::none;
-    trouble.compare_exchange_strong(none, found, std::memory_order_acq_rel);
-    link.fail(plugin::fault_of(found));
+  void report_fault(plugin::PluginFault fault) noexcept {
+    if (fault == plugin::PluginFault::none) return;
+    auto expected = plugin::PluginFault::none;
+    plugin_fault.compare_exchange_strong(expected, fault, std::memory_order_acq_rel);
+    link.fail(plugin::fault_of(fault));
   }
 
   plugin::Library library;
@@ -109,24 +109,24 @@ struct PluginDevice::Running {
   SchedulingRequest scheduling;
   LinkPace::Time period;
   DeviceLink link;
-  bool enabled = false;  ///< used only by the device's thread
+  bool is_enabled = false;  ///< used only by the device's thread
   std::atomic<DeviceReadiness> readiness{DeviceReadiness::needs_calibration};
-  std::atomic<plugin::PluginFault> trouble{plugin::PluginFault::none};
+  std::atomic<plugin::PluginFault> plugin_fault{plugin::PluginFault::none};
   std::atomic<bool> closing{false};
 };
 
 PluginDevice::PluginDevice(const PluginSettings& settings, PluginOptions options)
-    : running_(std::make_shared<Running>(settings, std::move(options))) {
-  std::packaged_task<void()> life([running = running_] { running->run(); });
-  ended_ = life.get_future();
-  thread_ = std::thread(std::move(life));
+    : runtime_(std::make_shared<Runtime>(settings, std::move(options))) {
+  std::packaged_task<void()> thread_work([runtime = runtime_] { runtime->run(); });
+  thread_end_ = thread_work.get_future();
+  thread_ = std::thread(std::move(thread_work));
 }
 
 PluginDevice::~PluginDevice() {
-  running_->link.halt();
-  running_->closing.store(true, std::memory_order_release);
-  running_->pace->end();
-  if (ended_.wait_for(kPluginTimeout) == std::future_status::ready) {
+  runtime_->link.halt();
+  runtime_->closing.store(true, std::memory_order_release);
+  runtime_->pace->end();
+  if (thread_end_.wait_for(kPluginTimeout) == std::future_status::ready) {
     thread_.join();
   } else {
     thread_.detach();  // a call hangs; its thread closes the device if it ever returns
@@ -134,23 +134,23 @@ PluginDevice::~PluginDevice() {
 }
 
 DeviceInfo PluginDevice::info() const {
-  return running_->info;
+  return runtime_->info;
 }
 
 DeviceLink& PluginDevice::link() const noexcept {
-  return running_->link;
+  return runtime_->link;
 }
 
 DeviceLink::Time PluginDevice::link_time() const noexcept {
-  return running_->pace->now();
+  return runtime_->pace->now();
 }
 
 DeviceReadiness PluginDevice::readiness() const noexcept {
-  return running_->readiness.load(std::memory_order_acquire);
+  return runtime_->readiness.load(std::memory_order_acquire);
 }
 
-plugin::PluginFault PluginDevice::trouble() const noexcept {
-  return running_->trouble.load(std::memory_order_acquire);
+plugin::PluginFault PluginDevice::plugin_fault() const noexcept {
+  return runtime_->plugin_fault.load(std::memory_order_acquire);
 }
 
 DeviceDriver plugin_driver() {

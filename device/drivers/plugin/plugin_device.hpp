@@ -22,32 +22,32 @@ struct PluginOptions {
 };
 
 /// The driver "plugin". A separate thread samples the device and sends the force at the plug-in's
-/// rate. Everything from a plug-in is validated. Zero is sent before the device is ready, after
-/// `halt` and every fault, and 10 ms after the servo's last `write`; only otherwise are the
-/// plug-in's motors enabled. A fault latches: reopen the device.
+/// rate. Everything from a plug-in is validated. The motors are disabled and zero is sent before
+/// the device is ready, after `halt` and every fault, and from 10 ms after the servo's last
+/// `write`. A fault latches until the device is reopened.
 ///
-/// A blocking call makes the samples stale, which ends a run. If it never returns, device and
-/// thread are leaked, and nothing waits for them.
+/// A blocking call makes the samples stale, which ends a run. If it never returns, the destructor
+/// leaks device and thread instead of waiting.
 class PluginDevice final : public LinkedDevice {
  public:
   /// \throws DeviceError with the remedy if the library cannot be used, the device does not open,
-  ///   or its description is impossible
+  ///   or its description is invalid
   explicit PluginDevice(const PluginSettings& settings, PluginOptions options = {});
   /// Sends zeros, disables the motors and closes the device.
   ~PluginDevice() override;
 
   [[nodiscard]] DeviceInfo info() const override;
   [[nodiscard]] DeviceReadiness readiness() const noexcept override;
-  /// The cause of the first fault. Any thread.
-  [[nodiscard]] plugin::PluginFault trouble() const noexcept;
+  /// \return the cause of the first fault. Any thread.
+  [[nodiscard]] plugin::PluginFault plugin_fault() const noexcept;
 
  private:
   [[nodiscard]] DeviceLink& link() const noexcept override;
   [[nodiscard]] DeviceLink::Time link_time() const noexcept override;
 
-  struct Running;
-  std::shared_ptr<Running> running_;  ///< shared with a thread that may never end
-  std::future<void> ended_;
+  struct Runtime;
+  std::shared_ptr<Runtime> runtime_;  ///< shared with a thread that may never end
+  std::future<void> thread_end_;
   std::thread thread_;
 };
 

@@ -21,7 +21,7 @@ constexpr double kMinRateHz = 500.0;
 constexpr double kMaxRateHz = 10'000.0;
 constexpr double kMinSideMm = 1.0;
 constexpr double kMaxSideMm = 2000.0;
-/// No desktop device reaches so far, and no hand is so fast.
+/// Limits beyond any desktop device's reach and any hand's speed.
 constexpr double kAbsurdMm = 10'000.0;
 constexpr double kAbsurdMmS = 1e6;
 
@@ -31,21 +31,22 @@ class Guarded {
  public:
   Guarded() noexcept {
     value.size = sizeof(Structure);
-    guard_.fill(kMark);
+    guard_.fill(kGuardByte);
   }
-  [[nodiscard]] bool is_whole() const noexcept {
-    return std::all_of(guard_.begin(), guard_.end(), [](unsigned char c) { return c == kMark; });
+  [[nodiscard]] bool is_intact() const noexcept {
+    return std::all_of(guard_.begin(), guard_.end(),
+                       [](unsigned char c) { return c == kGuardByte; });
   }
 
   Structure value{};
 
  private:
-  static constexpr unsigned char kMark = 0xa5;
+  static constexpr unsigned char kGuardByte = 0xa5;
   std::array<unsigned char, 256> guard_{};
 };
 
-[[noreturn]] void refuse_plugin(const std::string& who, const std::string& what) {
-  throw DeviceError(one_line(who + ": " + what + "; " + kRemedy));
+[[noreturn]] void refuse_plugin(const std::string& origin, const std::string& problem) {
+  throw DeviceError(one_line(origin + ": " + problem + "; " + kRemedy));
 }
 
 /// \return the length of a text, at most `max`
@@ -59,7 +60,7 @@ std::string text_in(const char (&text)[size]) {
   return one_line(std::string(text, length_of(text, size)));
 }
 
-void expect_sound_api(const std::string& file, const touchtrial_device_api* api) {
+void check_api(const std::string& file, const touchtrial_device_api* api) {
   if (api == nullptr) refuse_plugin(file, "touchtrial_device_v1 returned nothing");
   if (api->version != TOUCHTRIAL_DEVICE_VERSION) {
     refuse_plugin(file, "has version " + std::to_string(api->version) +
@@ -76,18 +77,18 @@ void expect_sound_api(const std::string& file, const touchtrial_device_api* api)
        {"sample", api->sample != nullptr},
        {"force", api->force != nullptr},
        {"close", api->close != nullptr}}};
-  for (const auto& [name, is_there] : functions) {
-    if (!is_there) refuse_plugin(file, "has no function " + std::string(name));
+  for (const auto& [name, exists] : functions) {
+    if (!exists) refuse_plugin(file, "has no function " + std::string(name));
   }
 }
 
-std::string sound_name(const std::string& file, const char* name) {
+std::string checked_name(const std::string& file, const char* name) {
   const std::size_t length = name == nullptr ? 0 : length_of(name, kMaxNameBytes + 1);
-  const bool is_sound = length > 0 && length <= kMaxNameBytes &&
+  const bool is_valid = length > 0 && length <= kMaxNameBytes &&
                         std::all_of(name, name + length, [](unsigned char c) {
                           return c < 0x80 && (std::isalnum(c) != 0 || c == '-' || c == '_');
                         });
-  if (!is_sound) {
+  if (!is_valid) {
     refuse_plugin(
         file, "has no name of 1 to " + std::to_string(kMaxNameBytes) + " letters, digits, - and _");
   }
@@ -97,40 +98,44 @@ std::string sound_name(const std::string& file, const char* name) {
 /// Validates a description.
 class DescriptionCheck {
  public:
-  explicit DescriptionCheck(std::string who) : origin_(std::move(who)) {}
+  explicit DescriptionCheck(std::string origin) : origin_(std::move(origin)) {}
 
-  /// \return the value, if low < value <= high, or value == low where that belongs to the range
-  double in_range(const char* field, double value, double low, double high, bool has_low) const {
-    if ((value > low || (has_low && value == low)) && value <= high) return value;
+  /// \param includes_low  whether the value may equal `low`
+  /// \return the value, if it is in range
+  double in_range(const char* field, double value, double low, double high,
+                  bool includes_low) const {
+    if ((value > low || (includes_low && value == low)) && value <= high) return value;
     refuse(std::string(field) + " is " + (std::isfinite(value) ? number_text(value) : "no number") +
-           ", must be " + (has_low ? "from " : "above ") + number_text(low) + " to " +
+           ", must be " + (includes_low ? "from " : "above ") + number_text(low) + " to " +
            number_text(high));
   }
-  [[noreturn]] void refuse(const std::string& what) const {
-    refuse_plugin(origin_, "describe: " + what);
+  [[noreturn]] void refuse(const std::string& problem) const {
+    refuse_plugin(origin_, "describe: " + problem);
   }
 
  private:
   std::string origin_;
 };
 
-Workspace workspace_in(const touchtrial_device_description& told, const DescriptionCheck& judge) {
-  const auto& min = told.workspace_least_mm;
-  const auto& max = told.workspace_greatest_mm;
+Workspace workspace_in(const touchtrial_device_description& description,
+                       const DescriptionCheck& checker) {
+  const auto& min = description.workspace_least_mm;
+  const auto& max = description.workspace_greatest_mm;
   for (int axis = 0; axis < 3; ++axis) {
-    (void)judge.in_range("workspace_least_mm", min[axis], -kMaxSideMm, kMaxSideMm, true);
-    (void)judge.in_range("a side of the workspace in mm", max[axis] - min[axis], kMinSideMm,
-                         kMaxSideMm, true);
+    (void)checker.in_range("workspace_least_mm", min[axis], -kMaxSideMm, kMaxSideMm, true);
+    (void)checker.in_range("a side of the workspace in mm", max[axis] - min[axis], kMinSideMm,
+                           kMaxSideMm, true);
   }
-  if (told.shape > TOUCHTRIAL_DEVICE_ELLIPSOID) {
-    judge.refuse("shape is " + std::to_string(told.shape) + ", must be 0 or 1");
+  if (description.shape > TOUCHTRIAL_DEVICE_ELLIPSOID) {
+    checker.refuse("shape is " + std::to_string(description.shape) + ", must be 0 or 1");
   }
-  return {{min[0], min[1], min[2]},
-          {max[0], max[1], max[2]},
-          told.shape == TOUCHTRIAL_DEVICE_BOX ? WorkspaceShape::box : WorkspaceShape::ellipsoid};
+  return {
+      {min[0], min[1], min[2]},
+      {max[0], max[1], max[2]},
+      description.shape == TOUCHTRIAL_DEVICE_BOX ? WorkspaceShape::box : WorkspaceShape::ellipsoid};
 }
 
-PluginFault trouble_of_code(std::int32_t code) noexcept {
+PluginFault fault_of_code(std::int32_t code) noexcept {
   switch (code) {
     case TOUCHTRIAL_DEVICE_OK:
       return PluginFault::none;
@@ -147,8 +152,8 @@ PluginFault trouble_of_code(std::int32_t code) noexcept {
   }
 }
 
-std::optional<DeviceReadiness> readiness_in(std::uint32_t told) noexcept {
-  switch (told) {
+std::optional<DeviceReadiness> readiness_in(std::uint32_t number) noexcept {
+  switch (number) {
     case TOUCHTRIAL_DEVICE_READY:
       return DeviceReadiness::ready;
     case TOUCHTRIAL_DEVICE_NEEDS_HOMING:
@@ -184,8 +189,8 @@ Library::Library(const std::filesystem::path& file)
   library_.find("touchtrial_device_v1", entry);
   library_.find_if_any("touchtrial_device_observe_v1", observe_);
   api_ = entry();
-  expect_sound_api(file_, api_);
-  name_ = sound_name(file_, api_->name);
+  check_api(file_, api_);
+  name_ = checked_name(file_, api_->name);
 }
 
 std::optional<Vec3> Library::observed_force_n() const noexcept {
@@ -195,8 +200,8 @@ std::optional<Vec3> Library::observed_force_n() const noexcept {
   return is_finite(force_n) ? std::optional(force_n) : std::nullopt;
 }
 
-DeviceFault fault_of(PluginFault trouble) noexcept {
-  switch (trouble) {
+DeviceFault fault_of(PluginFault plugin_fault) noexcept {
+  switch (plugin_fault) {
     case PluginFault::none:
       return DeviceFault::none;
     case PluginFault::lost:
@@ -212,7 +217,7 @@ DeviceFault fault_of(PluginFault trouble) noexcept {
   }
 }
 
-const char* words_for(PluginFault trouble) noexcept {
+const char* fault_text(PluginFault plugin_fault) noexcept {
   using enum PluginFault;
   static constexpr auto kNames = std::to_array<Named<PluginFault>>(
       {{"nothing is wrong", none},
@@ -226,17 +231,17 @@ const char* words_for(PluginFault trouble) noexcept {
        {"gave a reading with a smaller number than the one before", sequence_decreased},
        {"gave a readiness that the interface does not have", unknown_readiness},
        {"wrote beyond the size of a structure", wrote_past}});
-  return name_in(kNames, trouble).data();
+  return name_in(kNames, plugin_fault).data();
 }
 
 OpenDevice::OpenDevice(const Library& library, const std::string& settings) : library_(library) {
   std::array<char, 512> error{};
   device_ = library.api().open(settings.c_str(), error.data(), error.size() - 1);
   if (device_ != nullptr) return;
-  const std::string words(error.data(), length_of(error.data(), error.size() - 1));
+  const std::string reason(error.data(), length_of(error.data(), error.size() - 1));
   throw DeviceError(
       one_line("plugin " + library.name() + ": does not open: " +
-               (words.empty() ? "it gives no reason; see its own documentation" : words)));
+               (reason.empty() ? "it gives no reason; see its own documentation" : reason)));
 }
 
 OpenDevice::~OpenDevice() {
@@ -244,26 +249,28 @@ OpenDevice::~OpenDevice() {
 }
 
 DeviceInfo OpenDevice::info() const {
-  const DescriptionCheck judge("plugin " + library_.name());
+  const DescriptionCheck checker("plugin " + library_.name());
   Guarded<touchtrial_device_description> guarded;
   const std::int32_t code = library_.api().describe(device_, &guarded.value);
-  const touchtrial_device_description& told = guarded.value;
-  if (code != TOUCHTRIAL_DEVICE_OK) judge.refuse("it returned " + std::to_string(code));
-  if (!guarded.is_whole()) judge.refuse(words_for(PluginFault::wrote_past));
+  const touchtrial_device_description& description = guarded.value;
+  if (code != TOUCHTRIAL_DEVICE_OK) checker.refuse("it returned " + std::to_string(code));
+  if (!guarded.is_intact()) checker.refuse(fault_text(PluginFault::wrote_past));
   DeviceInfo info;
   info.name = "plugin";
-  info.serial = text_in(told.serial);
-  if (info.serial.empty()) judge.refuse("serial is empty; certificates belong to one device");
-  const std::string model = text_in(told.model);
+  info.serial = text_in(description.serial);
+  if (info.serial.empty()) checker.refuse("serial is empty; certificates belong to one device");
+  const std::string model = text_in(description.model);
   info.model = library_.name() + (model.empty() ? "" : ": " + model);
-  info.firmware = text_in(told.firmware);
-  info.max_force_n = judge.in_range("max_force_n", told.max_force_n, 0.0, kMaxForceN, false);
-  info.continuous_force_n =
-      judge.in_range("continuous_force_n", told.continuous_force_n, 0.0, told.max_force_n, true);
-  info.max_rate_hz = judge.in_range("max_rate_hz", told.max_rate_hz, kMinRateHz, kMaxRateHz, true);
-  info.max_stiffness_n_per_mm = judge.in_range(
-      "max_stiffness_n_per_mm", told.max_stiffness_n_per_mm, 0.0, kMaxStiffnessNPerMm, true);
-  info.workspace = workspace_in(told, judge);
+  info.firmware = text_in(description.firmware);
+  info.max_force_n =
+      checker.in_range("max_force_n", description.max_force_n, 0.0, kMaxForceN, false);
+  info.continuous_force_n = checker.in_range("continuous_force_n", description.continuous_force_n,
+                                             0.0, description.max_force_n, true);
+  info.max_rate_hz =
+      checker.in_range("max_rate_hz", description.max_rate_hz, kMinRateHz, kMaxRateHz, true);
+  info.max_stiffness_n_per_mm = checker.in_range(
+      "max_stiffness_n_per_mm", description.max_stiffness_n_per_mm, 0.0, kMaxStiffnessNPerMm, true);
+  info.workspace = workspace_in(description, checker);
   info.has_encoders = true;
   return info;
 }
@@ -271,36 +278,38 @@ DeviceInfo OpenDevice::info() const {
 Reading OpenDevice::sample() noexcept {
   Guarded<touchtrial_device_sample> guarded;
   Reading reading;
-  reading.trouble = trouble_of_code(library_.api().sample(device_, &guarded.value));
-  if (!guarded.is_whole()) reading.trouble = PluginFault::wrote_past;
-  if (reading.trouble != PluginFault::none) return reading;
-  const touchtrial_device_sample& told = guarded.value;
-  const std::optional<DeviceReadiness> readiness = readiness_in(told.readiness);
+  reading.plugin_fault = fault_of_code(library_.api().sample(device_, &guarded.value));
+  if (!guarded.is_intact()) reading.plugin_fault = PluginFault::wrote_past;
+  if (reading.plugin_fault != PluginFault::none) return reading;
+  const touchtrial_device_sample& plugin_sample = guarded.value;
+  const std::optional<DeviceReadiness> readiness = readiness_in(plugin_sample.readiness);
   if (!readiness) {
-    reading.trouble = PluginFault::unknown_readiness;
+    reading.plugin_fault = PluginFault::unknown_readiness;
     return reading;
   }
   reading.readiness = *readiness;
   DeviceSample& sample = reading.sample;
-  sample.position_mm = {told.position_mm[0], told.position_mm[1], told.position_mm[2]};
-  sample.velocity_mm_s = {told.velocity_mm_s[0], told.velocity_mm_s[1], told.velocity_mm_s[2]};
-  sample.buttons = told.buttons;
+  sample.position_mm = {plugin_sample.position_mm[0], plugin_sample.position_mm[1],
+                        plugin_sample.position_mm[2]};
+  sample.velocity_mm_s = {plugin_sample.velocity_mm_s[0], plugin_sample.velocity_mm_s[1],
+                          plugin_sample.velocity_mm_s[2]};
+  sample.buttons = plugin_sample.buttons;
   sample.ready = *readiness == DeviceReadiness::ready;
-  reading.trouble =
-      told.sequence < last_sequence_ ? PluginFault::sequence_decreased : motion_fault(sample);
-  reading.is_new = told.sequence > last_sequence_;
-  last_sequence_ = told.sequence;
+  reading.plugin_fault = plugin_sample.sequence < last_sequence_ ? PluginFault::sequence_decreased
+                                                                 : motion_fault(sample);
+  reading.is_new = plugin_sample.sequence > last_sequence_;
+  last_sequence_ = plugin_sample.sequence;
   return reading;
 }
 
 PluginFault OpenDevice::force(Vec3 force_n) noexcept {
   const std::array<double, 3> force = {force_n.x, force_n.y, force_n.z};
-  return trouble_of_code(library_.api().force(device_, force.data()));
+  return fault_of_code(library_.api().force(device_, force.data()));
 }
 
 PluginFault OpenDevice::enable(bool on) noexcept {
   const auto enable = library_.api().enable;
-  return enable == nullptr ? PluginFault::none : trouble_of_code(enable(device_, on ? 1 : 0));
+  return enable == nullptr ? PluginFault::none : fault_of_code(enable(device_, on ? 1 : 0));
 }
 
 }  // namespace touchtrial::device::plugin

@@ -1,5 +1,5 @@
-/// \file The host's side of a plug-in: its library, one open device, and validation of everything
-///   it returns. It exposes the C interface, which stays within device/.
+/// \file The host's side of a plug-in: its library, an open device, and validation of everything it
+///   returns. It exposes the C interface, so only device/ may include it.
 #pragma once
 
 #include "device/drivers/plugin/touchtrial_device.h"
@@ -13,20 +13,20 @@
 
 namespace touchtrial::device::plugin {
 
-/// The loaded library with a complete interface. It is never unloaded, because its own threads may
-/// still run.
+/// A loaded library with a complete interface. It is never unloaded, because its threads may still
+/// be running.
 class Library {
  public:
-  /// \throws DeviceError naming library and remedy if it is not named or cannot be loaded, or its
+  /// \throws DeviceError with the remedy if no library is named, it cannot be loaded, or its
   ///   interface has another version or size, a null function, or an invalid name
   explicit Library(const std::filesystem::path& file);
 
-  /// Of the driver: letters, digits, - and _.
+  /// The driver's name: letters, digits, - and _.
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] const std::string& file() const noexcept { return file_; }
   [[nodiscard]] const touchtrial_device_api& api() const noexcept { return *api_; }
-  /// \return the force command of the motors of the last opened device, N, device frame; nothing if
-  ///   the plug-in does not report a finite one. Any thread.
+  /// \return the motors' force command of the last opened device, N, device frame; nothing if the
+  ///   plug-in reports none that is finite. Any thread.
   [[nodiscard]] std::optional<Vec3> observed_force_n() const noexcept;
 
  private:
@@ -46,23 +46,23 @@ enum class PluginFault : std::uint8_t {
   limit_passed,
   failed,
   not_finite,          ///< a position or velocity
-  absurd,              ///< a position or velocity that no device has
-  sequence_decreased,  ///< a reading with a smaller number than the one before
-  unknown_readiness,   ///< a number that the interface does not have
-  wrote_past,          ///< wrote beyond the size of a structure
+  absurd,              ///< an impossibly large position or velocity
+  sequence_decreased,  ///< a smaller sequence number than in the previous reading
+  unknown_readiness,   ///< a readiness that the interface does not define
+  wrote_past,          ///< a write beyond the end of a structure
 };
-[[nodiscard]] DeviceFault fault_of(PluginFault trouble) noexcept;
-/// For a person: "gave a position or velocity that is not a number".
-[[nodiscard]] const char* words_for(PluginFault trouble) noexcept;
+[[nodiscard]] DeviceFault fault_of(PluginFault plugin_fault) noexcept;
+/// \return a phrase for messages, for instance "gave a position or velocity that is not a number"
+[[nodiscard]] const char* fault_text(PluginFault plugin_fault) noexcept;
 
 struct Reading {
-  PluginFault trouble = PluginFault::none;
-  bool is_new = false;  ///< since the last one
-  DeviceSample sample;  ///< without our sequence number
+  PluginFault plugin_fault = PluginFault::none;
+  bool is_new = false;  ///< whether its sequence number is greater than the last one's
+  DeviceSample sample;  ///< without sequence number
   DeviceReadiness readiness = DeviceReadiness::needs_calibration;
 };
 
-/// One open device; the destructor closes it. One thread at a time.
+/// An open device; the destructor closes it. One thread at a time.
 class OpenDevice {
  public:
   /// \param library  must outlive this
@@ -73,10 +73,10 @@ class OpenDevice {
   OpenDevice(const OpenDevice&) = delete;
   OpenDevice& operator=(const OpenDevice&) = delete;
 
-  /// \throws DeviceError naming the impossible member
+  /// \throws DeviceError naming the member that is invalid
   [[nodiscard]] DeviceInfo info() const;
 
-  /// \name For the device's thread: no heap, lock or exception on our side
+  /// \name For the device's thread: no allocation, lock or exception in the host
   ///@{
   [[nodiscard]] Reading sample() noexcept;
   [[nodiscard]] PluginFault force(Vec3 force_n) noexcept;
@@ -89,7 +89,7 @@ class OpenDevice {
   std::uint64_t last_sequence_ = 0;
 };
 
-/// Ends the errors about a plug-in that cannot be used.
+/// The remedy in errors about an unusable plug-in.
 inline constexpr const char* kRemedy =
     "correct the plug-in, or name another library in the device settings at plugin.library";
 

@@ -27,8 +27,8 @@ struct CsvRow {
   std::size_t line = 0;  ///< from 1
 };
 
-[[noreturn]] void refuse(const std::string& where, const std::string& why) {
-  throw FileError(one_line(where + ": " + why));
+[[noreturn]] void refuse(const std::string& where, const std::string& problem) {
+  throw FileError(one_line(where + ": " + problem));
 }
 
 /// Rows of a CSV file: commas separate fields, LF or CRLF rows. Quotation marks around a field and
@@ -44,11 +44,11 @@ class CsvRows {
   /// \return false at the end
   [[nodiscard]] bool next(CsvRow& row) {
     if (rest_.empty()) return false;
-    std::string_view text = taken(rest_, '\n');
+    std::string_view text = cut(rest_, '\n');
     if (text.ends_with('\r')) text.remove_suffix(1);
     row = {{}, ++line_};
     do {
-      std::string_view field = taken(text, ',');
+      std::string_view field = cut(text, ',');
       if (field.size() > 1 && field.front() == '"' && field.back() == '"') {
         field = field.substr(1, field.size() - 2);
       }
@@ -59,7 +59,7 @@ class CsvRows {
 
  private:
   /// Removes and returns the text before the first separator, or the whole text without one.
-  static std::string_view taken(std::string_view& text, char mark) {
+  static std::string_view cut(std::string_view& text, char mark) {
     const std::size_t end = text.find(mark);
     const std::string_view before = text.substr(0, end);
     text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
@@ -76,19 +76,20 @@ struct TimedPosition {
 };
 
 std::array<std::size_t, 4> find_columns(const CsvRow& header, const std::string& where) {
-  std::array<std::size_t, 4> found{};
+  std::array<std::size_t, 4> columns{};
   for (std::size_t i = 0; i < kColumns.size(); ++i) {
-    const auto at = std::ranges::find(header.fields, kColumns[i]);
-    if (at == header.fields.end()) {
+    const auto field = std::ranges::find(header.fields, kColumns[i]);
+    if (field == header.fields.end()) {
       refuse(where, "no column " + std::string(kColumns[i]) +
-                        "; the header has to name time_s, x_mm, y_mm, z_mm");
+                        "; the header must name time_s, x_mm, y_mm, z_mm");
     }
-    found[i] = static_cast<std::size_t>(at - header.fields.begin());
+    columns[i] = static_cast<std::size_t>(field - header.fields.begin());
   }
-  return found;
+  return columns;
 }
 
-double number_from(const std::string& text, std::string_view column, const std::string& where) {
+double parse_motion_number(const std::string& text, std::string_view column,
+                           const std::string& where) {
   const auto value = number_in<double>(text);
   if (!value || !std::isfinite(*value)) {
     refuse(where, std::string(column) + " is not a number: '" + text.substr(0, 40) + "'");
@@ -96,16 +97,16 @@ double number_from(const std::string& text, std::string_view column, const std::
   return *value;
 }
 
-TimedPosition position_from(const CsvRow& row, const std::array<std::size_t, 4>& columns,
-                            const std::string& where) {
-  std::array<double, 4> v{};
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    v[i] = number_from(row.fields[columns[i]], kColumns[i], where);
-    if (i > 0 && std::abs(v[i]) > kMaxMm) {
+TimedPosition parse_position(const CsvRow& row, const std::array<std::size_t, 4>& columns,
+                             const std::string& where) {
+  std::array<double, 4> values{};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = parse_motion_number(row.fields[columns[i]], kColumns[i], where);
+    if (i > 0 && std::abs(values[i]) > kMaxMm) {
       refuse(where, std::string(kColumns[i]) + " is beyond 10 m; positions are in millimetres");
     }
   }
-  return {v[0], {v[1], v[2], v[3]}};
+  return {values[0], {values[1], values[2], values[3]}};
 }
 
 std::vector<TimedPosition> read_positions(CsvRows& rows, const std::string& name) {
@@ -120,7 +121,7 @@ std::vector<TimedPosition> read_positions(CsvRows& rows, const std::string& name
       refuse(where, std::to_string(row.fields.size()) + " fields where the header has " +
                         std::to_string(width));
     }
-    positions.push_back(position_from(row, columns, where));
+    positions.push_back(parse_position(row, columns, where));
     if (positions.size() > 1 && !(positions.back().time_s > (positions.end() - 2)->time_s)) {
       refuse(where, "time_s does not increase; sort the rows by time");
     }
@@ -129,7 +130,7 @@ std::vector<TimedPosition> read_positions(CsvRows& rows, const std::string& name
   return positions;
 }
 
-/// \return the median step from row to row
+/// \return the median time from one row to the next
 double median_step_s(const std::vector<TimedPosition>& rows) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -145,27 +146,27 @@ std::vector<Vec3> fill_ticks(const std::vector<TimedPosition>& rows, double step
                              const std::string& name) {
   std::vector<Vec3> positions = {rows.front().position_mm};
   for (std::size_t i = 1; i < rows.size(); ++i) {
-    const Vec3 from = rows[i - 1].position_mm;
-    const Vec3 way = rows[i].position_mm - from;
+    const Vec3 start_mm = rows[i - 1].position_mm;
+    const Vec3 change_mm = rows[i].position_mm - start_mm;
     const double steps = std::round((rows[i].time_s - rows[i - 1].time_s) / step_s);
     if (steps < 1.0) refuse(name, "some rows are much closer in time than the others");
     if (steps + static_cast<double>(positions.size()) > RecordedMotion::kMaxTicks) {
       refuse(name, "is longer than " + std::to_string(RecordedMotion::kMaxTicks) + " ticks");
     }
-    for (double k = 1.0; k < steps; ++k) positions.push_back(from + (k / steps) * way);
+    for (double k = 1.0; k < steps; ++k) positions.push_back(start_mm + (k / steps) * change_mm);
     positions.push_back(rows[i].position_mm);
   }
   return positions;
 }
 
-/// \return the mean rate of the whole recording, to the millihertz, unaffected by rounded times
-double rate_over(double duration_s, std::size_t ticks, const std::string& name) {
+/// \return the mean rate of the recording, rounded to 1 mHz, so that rounded times have no effect
+double recording_rate(double duration_s, std::size_t ticks, const std::string& name) {
   const double rate_hz = std::round(static_cast<double>(ticks - 1) / duration_s * 1000.0) / 1000.0;
   if (rate_hz >= kMinHz && rate_hz <= kMaxHz) return rate_hz;
-  refuse(name, "it does not have 10 to 20,000 rows a second; time_s is in seconds");
+  refuse(name, "does not have 10 to 20,000 rows per second; time_s is in seconds");
 }
 
-/// That of a usual device.
+/// The peak force of a typical device.
 constexpr double kMaxForceN = 3.3;
 
 RecordedMotion motion_of(const DeviceSettings& settings) {
@@ -210,7 +211,7 @@ RecordedMotion read_motion_csv(const std::filesystem::path& file) {
   const std::vector<TimedPosition> positions = read_positions(rows, name);
   std::vector<Vec3> ticks = fill_ticks(positions, median_step_s(positions), name);
   const double duration_s = positions.back().time_s - positions.front().time_s;
-  const double rate_hz = rate_over(duration_s, ticks.size(), name);
+  const double rate_hz = recording_rate(duration_s, ticks.size(), name);
   return {std::move(ticks), rate_hz};
 }
 

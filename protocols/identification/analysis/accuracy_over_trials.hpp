@@ -1,5 +1,4 @@
-/// \file Accuracy as a function of trial number: a smoothed curve for each participant, and their
-/// mean.
+/// \file Accuracy as a function of trial number: the mean of participants' smoothed curves.
 #pragma once
 
 #include "analysis/choices/people.hpp"
@@ -22,7 +21,7 @@ struct AccuracyOverTrials {
 
 /// Each participant's right answers are smoothed by a Gaussian kernel, whose width is a tenth of
 /// the largest number of trials, but at least two trials. Trials without an answer are wrong.
-/// \param right  of each participant, in the order of trials
+/// \param right  by participant and trial
 [[nodiscard]] AccuracyOverTrials accuracy_over_trials(std::span<const std::vector<bool>> right);
 /// \param people  with their trials in any order
 [[nodiscard]] AccuracyOverTrials accuracy_over_trials(std::span<const choices::Person> people);

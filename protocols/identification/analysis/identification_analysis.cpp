@@ -14,10 +14,9 @@
 namespace touchtrial::analysis::identification {
 namespace {
 
-/// The maximum number of traces that a report reads by default; reading more takes seconds.
-constexpr int kTracesUnasked = 2500;
+/// The maximum number of traces that a report reads by default; more take seconds.
+constexpr int kMaxDefaultTraces = 2500;
 
-/// The answers to each class, in the trials of one method that count.
 DataTable confusion_table(const Outcomes& outcomes, int method) {
   const ConfusionMatrix confusion = confusion_of(outcomes, method);
   MeasureList<int> measures = confusion_measures(outcomes.classes, confusion);
@@ -49,39 +48,39 @@ class IdentificationResults final : public Results {
   bool paper_values_;
 };
 
-bool reads_traces(const ReportOptions& wishes, const Outcomes& outcomes) {
-  if (wishes.source == nullptr) return false;
-  if (wishes.traces != ReportOptions::Traces::if_few) {
-    return wishes.traces == ReportOptions::Traces::yes;
+bool should_read_traces(const ReportOptions& options, const Outcomes& outcomes) {
+  if (options.source == nullptr) return false;
+  if (options.traces != ReportOptions::Traces::if_few) {
+    return options.traces == ReportOptions::Traces::yes;
   }
-  return wishes.page && traces_to_read(outcomes) <= kTracesUnasked;
+  return options.page && traces_to_read(outcomes) <= kMaxDefaultTraces;
 }
 
-std::vector<ExplorationPath> explorations(const Outcomes& outcomes, const ReportOptions& wishes) {
-  if (wishes.source == nullptr) return {};
-  const auto& [store, key] = *wishes.source;
-  if (!wishes.trial.empty()) {
-    return {exploration_named(store, key, outcomes, trial_name(wishes.trial))};
+std::vector<ExplorationPath> explorations(const Outcomes& outcomes, const ReportOptions& options) {
+  if (options.source == nullptr) return {};
+  const auto& [store, key] = *options.source;
+  if (!options.trial.empty()) {
+    return {find_exploration(store, key, outcomes, trial_name(options.trial))};
   }
-  if (!wishes.page || !reads_traces(wishes, outcomes)) return {};
+  if (!options.page || !should_read_traces(options, outcomes)) return {};
   return first_explorations(store, key, outcomes);
 }
 
 class IdentificationAnalysis final : public ProtocolAnalysis {
  public:
   std::unique_ptr<const Results> results(const Outcomes& outcomes,
-                                         const ReportOptions& wishes) const override {
-    // Paths are read first, because the request for them may be refused.
-    std::vector<ExplorationPath> paths = explorations(outcomes, wishes);
+                                         const ReportOptions& options) const override {
+    // Paths are made first, because the name of the trial may be invalid.
+    std::vector<ExplorationPath> paths = explorations(outcomes, options);
     StudyReport report = make_report(outcomes);
-    if (reads_traces(wishes, outcomes)) {
-      report.cues = make_cues(wishes.source->store, wishes.source->key, outcomes,
-                              {.progress = wishes.progress});
+    if (should_read_traces(options, outcomes)) {
+      report.cues = make_cues(options.source->store, options.source->key, outcomes,
+                              {.progress = options.progress});
     }
     const ProtocolMethods methods = protocol_methods(report, outcomes);
     return with_methods(std::make_unique<IdentificationResults>(std::move(report), std::move(paths),
-                                                                wishes.published_values),
-                        outcomes, wishes, methods);
+                                                                options.published_values),
+                        outcomes, options, methods);
   }
   std::vector<ResultTable> tables(const Outcomes& outcomes) const override {
     std::vector<ResultTable> tables;

@@ -1,5 +1,5 @@
-/// \file The analysis of how well participants distinguished the classes: confusions, accuracies,
-/// comparisons of methods, and ideal observers.
+/// \file The analysis of identification studies: confusions, accuracies, comparisons of methods, and
+/// ideal observers.
 #pragma once
 
 #include "analysis/report/results.hpp"

@@ -1,4 +1,4 @@
-/// \file What the methods of a report say of classification and comparison.
+/// \file Sentences of the methods section for classification and comparison.
 #pragma once
 
 #include "analysis/report/methods.hpp"
@@ -6,7 +6,7 @@
 
 namespace touchtrial::analysis::identification {
 
-/// \param report  of these outcomes
+/// \param report  made from the outcomes
 [[nodiscard]] ProtocolMethods protocol_methods(const StudyReport& report, const Outcomes& outcomes);
 
 }  // namespace touchtrial::analysis::identification

@@ -1,5 +1,4 @@
-/// \file A long table of trials with the R script that fits a mixed model to it. Format:
-/// docs/exports.md.
+/// \file A table of trials, and the R script that fits a mixed model to it. Format: docs/exports.md.
 #pragma once
 
 #include "analysis/report/results.hpp"
@@ -9,15 +8,15 @@
 
 namespace touchtrial::analysis::identification {
 
-/// The model that the script fits first, as an lme4 formula. Participants have random effects of
-/// everything that is compared. Images are fixed effects if there are fewer than ten, and random
-/// effects otherwise.
+/// The lme4 formula that the script fits first. Participants have random effects for everything
+/// that is compared. Images are fixed effects if there are fewer than ten, otherwise random
+/// effects.
 [[nodiscard]] std::string mixed_model_formula(const Outcomes& outcomes);
 
-/// The part of the script that is the same for every study: mixed_model_functions.R, built in.
+/// The constant part of the script: mixed_model_functions.R.
 [[nodiscard]] std::string_view mixed_model_functions() noexcept;
 
-/// The model with its table, one row for each counted trial.
+/// The table has one row per counted trial.
 [[nodiscard]] RModel mixed_model(const Outcomes& outcomes);
 
 }  // namespace touchtrial::analysis::identification

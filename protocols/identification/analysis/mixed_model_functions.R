@@ -1,7 +1,7 @@
-# The functions of mixed_model.R: two analyses of mixed_model.csv. For participants: Student's t over
-# participants' own accuracies. For trials: a logit model in which participants differ in everything
-# that is compared, or none if the trials cannot determine it. Run as a script, with --csv for all
-# digits; sourced, it only defines.
+# The functions of mixed_model.R, which analyses mixed_model.csv twice. Participants: Student's t
+# over participants' accuracies. Trials: a logit model with random effects of participants for
+# everything that is compared; there is none if the trials cannot determine it. As a script it
+# prints the results (--csv: with all digits); if sourced, it only defines functions.
 
 fewest_random_images <- 10
 fewest_participants <- 6
@@ -15,7 +15,8 @@ read_trials <- function(file, methods) {
   prepared(trials, methods)
 }
 
-# Factors, and the period: the place of a trial's block among its participant's blocks.
+# Converts columns to factors, and adds the period: the place of a trial's block among its
+# participant's blocks.
 prepared <- function(trials, methods) {
   trials$participant <- factor(trials$participant)
   trials$image <- factor(trials$image)
@@ -48,8 +49,8 @@ gap_of <- function(trials, first, second) {
   place[, first] - place[, second]
 }
 
-# The mean difference. With methods in blocks of their own: at equal periods, which for two methods
-# is the mean of the two orders' means.
+# The mean difference. With methods in separate blocks it is adjusted to equal periods; for two
+# methods this is the mean of the means of the two orders.
 difference_of <- function(trials, first, second) {
   accuracy <- accuracies(trials)
   difference <- accuracy[, first] - accuracy[, second]
@@ -129,8 +130,8 @@ fixed_terms <- function(trials, columns) {
   list(terms = terms, said = said)
 }
 
-# What differs between participants, and between images if they are many: first with correlations,
-# then without.
+# The random effects of participants, and of images if there are many: first with correlations, then
+# without.
 random_terms <- function(trials, columns) {
   inner <- paste(c("1", columns), collapse = " + ")
   groups <- c("participant", if (nlevels(trials$image) >= fewest_random_images) "image")
@@ -138,7 +139,7 @@ random_terms <- function(trials, columns) {
   lapply(bars, function(bar) paste0("(", inner, bar, groups, ")"))
 }
 
-# The fit, or why there is none.
+# The fit, or the reason why there is none, as text.
 fitted_model <- function(formula, trials) {
   control <- lme4::glmerControl(optimizer = "bobyqa", optCtrl = list(maxfun = 1e5))
   fit <- tryCatch(suppressMessages(suppressWarnings(
@@ -154,8 +155,8 @@ fitted_model <- function(formula, trials) {
   fit
 }
 
-# Log odds ratios of all pairs, or the log odds of one method. Degrees of freedom: those of
-# participants, because what is compared differs between them.
+# Log odds ratios of all pairs, or the log odds of one method. There are as many degrees of freedom
+# as participants, minus one, because the effects differ between participants.
 of_model <- function(fit, trials, columns) {
   methods <- levels(trials$method)
   estimates <- lme4::fixef(fit)
@@ -177,7 +178,7 @@ of_model <- function(fit, trials, columns) {
   rows
 }
 
-# The rows of the first model that the trials determine, with what there is to say.
+# The rows of the first model that the trials determine, with the sentences to print.
 of_trials <- function(trials) {
   none <- function(...) list(rows = NULL, said = c(...))
   if (!requireNamespace("lme4", quietly = TRUE)) {

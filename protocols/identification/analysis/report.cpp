@@ -17,10 +17,11 @@ namespace touchtrial::analysis::identification {
 namespace {
 
 using Choices = std::vector<Choice>;
-using choices::OwnTrials;
 using choices::Person;
+using choices::PersonTrials;
 
-/// By method; every method has all participants, in the order of sessions.
+/// Counted trials by method and participant; every method has all participants, in the order of
+/// sessions.
 using CountedTrials = std::vector<std::vector<Person>>;
 
 constexpr int kNullDeals = 500;
@@ -31,32 +32,25 @@ Choice choice_of(const TrialOutcome& trial) {
   return {trial.stimulus.class_index, trial.response};
 }
 
-Choices choices_of(const OwnTrials& trials) {
+Choices choices_of(const PersonTrials& trials) {
   Choices choices;
   for (const TrialOutcome* trial : trials) choices.push_back(choice_of(*trial));
   return choices;
 }
 
-/// The trials that presented one class.
-OwnTrials of_class(const OwnTrials& trials, int class_index) {
-  OwnTrials own;
-  std::ranges::copy_if(trials, std::back_inserter(own), [class_index](const TrialOutcome* trial) {
-    return trial->stimulus.class_index == class_index;
-  });
-  return own;
+PersonTrials trials_of_class(const PersonTrials& trials, int class_index) {
+  PersonTrials selected;
+  std::ranges::copy_if(trials, std::back_inserter(selected),
+                       [class_index](const TrialOutcome* trial) {
+                         return trial->stimulus.class_index == class_index;
+                       });
+  return selected;
 }
 
-/// The number of deals for the null mean. With many trials the mean varies little from deal to deal
-/// and each deal takes longer, so fewer suffice.
-int null_deals(int trials) {
-  return std::clamp(kMaxNullTrials / std::max(1, trials), kMinNullDeals, kNullDeals);
-}
-
-/// The participants' own accuracies with a class.
 std::vector<double> shares_of_class(const std::vector<Person>& people, int class_index) {
   std::vector<double> shares;
-  for (const Person& one : people) {
-    const auto share = choices::accuracy_of(of_class(one.trials, class_index)).share();
+  for (const Person& person : people) {
+    const auto share = choices::accuracy_of(trials_of_class(person.trials, class_index)).share();
     if (share) shares.push_back(*share);
   }
   return shares;
@@ -71,74 +65,75 @@ void add_class_accuracies(const std::vector<Person>& people, MethodReport& repor
   }
 }
 
-/// What each participant answered.
-std::vector<ConfusionMatrix> own_confusions(int classes, const std::vector<Person>& people) {
-  std::vector<ConfusionMatrix> own;
-  for (const Person& one : people) {
-    if (!one.trials.empty()) own.emplace_back(classes, choices_of(one.trials));
+/// The confusion matrices of participants with a trial.
+std::vector<ConfusionMatrix> participant_confusions(int classes,
+                                                    const std::vector<Person>& people) {
+  std::vector<ConfusionMatrix> confusions;
+  for (const Person& person : people) {
+    if (!person.trials.empty()) confusions.emplace_back(classes, choices_of(person.trials));
   }
-  return own;
+  return confusions;
 }
 
-/// Of participants' means over the classes from `first` to `last`.
+/// The unbiased hit rates of participants, each averaged over the classes from `first` to `last`.
 UnbiasedHits unbiased_hits(const std::vector<ConfusionMatrix>& participants, int first, int last) {
   std::vector<double> rates;
-  double by_chance = 0.0;
-  for (const ConfusionMatrix& own : participants) {
+  double chance_rate = 0.0;
+  for (const ConfusionMatrix& confusion : participants) {
     double rate = 0.0;
     double chance = 0.0;
     int presented = 0;
     for (int i = first; i <= last; ++i) {
-      const auto one = unbiased_hit_rate(own, i);
-      if (!one) continue;
+      const auto class_rate = unbiased_hit_rate(confusion, i);
+      if (!class_rate) continue;
       ++presented;
-      rate += *one;
-      chance += unbiased_hit_rate_by_chance(own, i).value_or(0.0);
+      rate += *class_rate;
+      chance += unbiased_hit_rate_by_chance(confusion, i).value_or(0.0);
     }
     if (presented == 0) continue;
     rates.push_back(rate / presented);
-    by_chance += chance / presented;
+    chance_rate += chance / presented;
   }
   UnbiasedHits hits{participant_mean(rates)};
-  if (!rates.empty()) hits.by_chance = by_chance / static_cast<double>(rates.size());
+  if (!rates.empty()) hits.chance_rate = chance_rate / static_cast<double>(rates.size());
   return hits;
 }
 
 void add_unbiased_hits(int classes, const std::vector<Person>& people, MethodReport& report) {
-  const std::vector<ConfusionMatrix> own = own_confusions(classes, people);
-  for (int i = 0; i < classes; ++i) report.unbiased.push_back(unbiased_hits(own, i, i));
-  report.unbiased.push_back(unbiased_hits(own, 0, classes - 1));
+  const std::vector<ConfusionMatrix> confusions = participant_confusions(classes, people);
+  for (int i = 0; i < classes; ++i) report.unbiased_hits.push_back(unbiased_hits(confusions, i, i));
+  report.unbiased_hits.push_back(unbiased_hits(confusions, 0, classes - 1));
 }
 
 ParticipantAccuracy participant_accuracy(int classes, const Person& person) {
-  const ConfusionMatrix own(classes, choices_of(person.trials));
-  const LabelMatching matching = best_label_matching(own);
-  return {person.name, choices::accuracy_of(person.trials), matching, raw_information_transfer(own),
-          label_swap_p(own, matching)};
+  const ConfusionMatrix confusion(classes, choices_of(person.trials));
+  const LabelMatching matching = best_label_matching(confusion);
+  return {person.name, choices::accuracy_of(person.trials), matching,
+          raw_information_transfer(confusion), label_swap_p(confusion, matching)};
 }
 
 void add_participants(int classes, const std::vector<Person>& people, int method,
                       MethodReport& report) {
   std::vector<double> shares;
   std::vector<Proportion> accuracies;
-  for (const Person& one : people) {
-    if (one.trials.empty()) continue;
-    report.per_participant.push_back(participant_accuracy(classes, one));
+  for (const Person& person : people) {
+    if (person.trials.empty()) continue;
+    report.per_participant.push_back(participant_accuracy(classes, person));
     accuracies.push_back(report.per_participant.back().accuracy);
     shares.push_back(accuracies.back().share().value_or(0.0));
   }
   report.mean = participant_mean(shares);
   report.bootstrap = bootstrap_mean(shares, static_cast<std::uint64_t>(method));
   report.spread = spread_of(accuracies);
-  if (accuracies.size() < kMinForBootstrap) return;
+  if (accuracies.size() < kMinBootstrapParticipants) return;
   const auto pooled = cluster_bootstrap(accuracies, static_cast<std::uint64_t>(method));
   if (pooled && pooled->low < pooled->high) {
     report.d_prime_over_participants = d_prime(report.overall, classes, *pooled);
   }
 }
 
-/// Adds the p of the fit by drawn tables: fewer of them where each has many trials.
-void judge(ChoiceModel& model, int trials, int method) {
+/// Computes the p of the fit from drawn tables; large studies need fewer of them.
+void set_drawn_p(ChoiceModel& model, int trials, int method) {
   constexpr int kMaxDrawnTrials = 5'000'000;
   constexpr int kMinDraws = 199;
   constexpr int kMaxDraws = 999;
@@ -150,17 +145,18 @@ void judge(ChoiceModel& model, int trials, int method) {
 InformationTransfer information_of(int classes, const std::vector<Person>& people, int trials,
                                    int method) {
   std::vector<Choices> answers;
-  for (const Person& one : people) answers.push_back(choices_of(one.trials));
-  return information_transfer(classes, answers, static_cast<std::uint64_t>(method),
-                              null_deals(trials));
+  for (const Person& person : people) answers.push_back(choices_of(person.trials));
+  // With many trials the null mean varies little, so fewer deals suffice.
+  const int deals = std::clamp(kMaxNullTrials / std::max(1, trials), kMinNullDeals, kNullDeals);
+  return information_transfer(classes, answers, static_cast<std::uint64_t>(method), deals);
 }
 
-/// Calls functions at once where a study is so large that threads pay.
-void in_parts(int trials, std::initializer_list<std::function<void()>> parts) {
-  constexpr int kFewTrials = 2'000;
-  const auto take = [&](std::size_t i) { parts.begin()[i](); };
-  if (trials >= kFewTrials) return all_in_parallel(parts.size(), take);
-  for (std::size_t i = 0; i < parts.size(); ++i) take(i);
+/// Calls functions, in parallel if the study is large.
+void run_parts(int trials, std::initializer_list<std::function<void()>> parts) {
+  constexpr int kMinParallelTrials = 2'000;
+  const auto run = [&](std::size_t i) { parts.begin()[i](); };
+  if (trials >= kMinParallelTrials) return run_all_in_parallel(parts.size(), run);
+  for (std::size_t i = 0; i < parts.size(); ++i) run(i);
 }
 
 MethodReport method_report(const Outcomes& outcomes, int method,
@@ -170,57 +166,58 @@ MethodReport method_report(const Outcomes& outcomes, int method,
   report.method = outcomes.methods[method];
   report.confusion = confusion_of(outcomes, method);
   report.overall = report.confusion.accuracy();
-  const int all = report.overall.n;
-  // Each part has its own members of the report, and its own random numbers.
-  in_parts(all, {[&] {
-                   report.choice = choice_model(report.confusion);
-                   if (report.choice) judge(*report.choice, all, method);
-                 },
-                 [&] { report.order = choices::order_of(outcomes, method); },
-                 [&] { report.information = information_of(classes, people, all, method); },
-                 [&] { add_participants(classes, people, method, report); },
-                 [&] {
-                   KnownMatches known;
-                   report.chance =
-                       choices::chance_of(outcomes, method, choices::kMaxChanceDeals, &known);
-                   report.prevalence = choices::own_prevalence(outcomes, method, &known);
-                 },
-                 [&] {
-                   report.matching = best_label_matching(report.confusion);
-                   report.d_prime = d_prime(report.overall, classes);
-                   add_class_accuracies(people, report);
-                   add_unbiased_hits(classes, people, report);
-                   report.reaction = choices::reaction_times(outcomes, method);
-                   report.breakdowns = choices::breakdowns(outcomes, method);
-                   report.over_trials = accuracy_over_trials(people);
-                   report.confidence = choices::confidence_of(outcomes, method);
-                   report.robustness = choices::robustness(outcomes, method);
-                 }});
+  const int trials = report.overall.n;
+  // Parts set different members, and have separate random streams.
+  run_parts(trials, {[&] {
+                       report.choice = choice_model(report.confusion);
+                       if (report.choice) set_drawn_p(*report.choice, trials, method);
+                     },
+                     [&] { report.order = choices::order_effects_of(outcomes, method); },
+                     [&] { report.information = information_of(classes, people, trials, method); },
+                     [&] { add_participants(classes, people, method, report); },
+                     [&] {
+                       MatchCache cache;
+                       report.chance = choices::chance_test_of(outcomes, method,
+                                                               choices::kMaxChanceDeals, &cache);
+                       report.prevalence =
+                           choices::prevalence_above_chance(outcomes, method, &cache);
+                     },
+                     [&] {
+                       report.matching = best_label_matching(report.confusion);
+                       report.d_prime = d_prime(report.overall, classes);
+                       add_class_accuracies(people, report);
+                       add_unbiased_hits(classes, people, report);
+                       report.reaction_times = choices::reaction_times(outcomes, method);
+                       report.breakdowns = choices::breakdowns(outcomes, method);
+                       report.accuracy_over_trials = accuracy_over_trials(people);
+                       report.confidence = choices::confidence_of(outcomes, method);
+                       report.robustness = choices::robustness(outcomes, method);
+                     }});
   return report;
 }
 
 /// One participant's trials with two methods.
-using PairedTrials = std::pair<OwnTrials, OwnTrials>;
+using PairedTrials = std::pair<PersonTrials, PersonTrials>;
 using PairedProportions = std::pair<Proportion, Proportion>;
 
-/// The trials of the participants who felt both methods.
+/// The trials of participants with both methods.
 std::vector<PairedTrials> paired_trials(const CountedTrials& counted, int first, int second) {
   std::vector<PairedTrials> pairs;
   for (std::size_t i = 0; i < counted[first].size(); ++i) {
-    const OwnTrials& a = counted[first][i].trials;
-    const OwnTrials& b = counted[second][i].trials;
+    const PersonTrials& a = counted[first][i].trials;
+    const PersonTrials& b = counted[second][i].trials;
     if (!a.empty() && !b.empty()) pairs.emplace_back(a, b);
   }
   return pairs;
 }
 
 std::vector<PairedTrials> pairs_of_class(const std::vector<PairedTrials>& pairs, int class_index) {
-  std::vector<PairedTrials> own;
+  std::vector<PairedTrials> selected;
   for (const auto& [first, second] : pairs) {
-    PairedTrials one(of_class(first, class_index), of_class(second, class_index));
-    if (!one.first.empty() && !one.second.empty()) own.push_back(std::move(one));
+    PairedTrials pair(trials_of_class(first, class_index), trials_of_class(second, class_index));
+    if (!pair.first.empty() && !pair.second.empty()) selected.push_back(std::move(pair));
   }
-  return own;
+  return selected;
 }
 
 std::vector<PairedProportions> proportions_of(const std::vector<PairedTrials>& pairs) {
@@ -231,7 +228,7 @@ std::vector<PairedProportions> proportions_of(const std::vector<PairedTrials>& p
   return proportions;
 }
 
-MethodComparison compared(const std::vector<PairedProportions>& pairs) {
+MethodComparison method_comparison(const std::vector<PairedProportions>& pairs) {
   std::vector<PairedAccuracy> accuracies;
   for (const auto& [first, second] : pairs) {
     accuracies.push_back({first.share().value_or(0.0), second.share().value_or(0.0)});
@@ -239,8 +236,8 @@ MethodComparison compared(const std::vector<PairedProportions>& pairs) {
   return compare_methods(accuracies);
 }
 
-/// McNemar's mid-p. Exists only if every participant has one trial with each method, because then
-/// the pairs are independent.
+/// McNemar's mid-p; only if every participant has one trial with each method, so that the pairs are
+/// independent.
 std::optional<double> mcnemar_of(const std::vector<PairedProportions>& pairs) {
   int first_only = 0;
   int second_only = 0;
@@ -253,17 +250,19 @@ std::optional<double> mcnemar_of(const std::vector<PairedProportions>& pairs) {
   return mcnemar_mid_p(first_only, second_only);
 }
 
-Proportion pooled(const std::vector<Person>& people, int class_index) {
+Proportion pooled_accuracy(const std::vector<Person>& people, int class_index) {
   Proportion all;
-  for (const Person& one : people) all += choices::accuracy_of(of_class(one.trials, class_index));
+  for (const Person& person : people)
+    all += choices::accuracy_of(trials_of_class(person.trials, class_index));
   return all;
 }
 
 ClassComparison class_comparison(const CountedTrials& counted, int first, int second,
                                  const std::vector<PairedTrials>& pairs, int class_index) {
   const auto proportions = proportions_of(pairs_of_class(pairs, class_index));
-  return {pooled(counted[first], class_index), pooled(counted[second], class_index),
-          compared(proportions), mcnemar_of(proportions)};
+  return {pooled_accuracy(counted[first], class_index),
+          pooled_accuracy(counted[second], class_index), method_comparison(proportions),
+          mcnemar_of(proportions)};
 }
 
 MethodPair method_pair(int classes, const CountedTrials& counted, int first, int second) {
@@ -272,9 +271,9 @@ MethodPair method_pair(int classes, const CountedTrials& counted, int first, int
   MethodPair pair;
   pair.first = first;
   pair.second = second;
-  pair.overall = compared(proportions);
+  pair.overall = method_comparison(proportions);
   pair.odds_ratio = mantel_haenszel(proportions);
-  if (pair.odds_ratio && proportions.size() >= kMinForBootstrap) {
+  if (pair.odds_ratio && proportions.size() >= kMinBootstrapParticipants) {
     pair.odds_ratio->bootstrap = odds_ratio_bootstrap(proportions);
   }
   pair.mcnemar_mid_p = mcnemar_of(proportions);
@@ -284,9 +283,8 @@ MethodPair method_pair(int classes, const CountedTrials& counted, int first, int
   return pair;
 }
 
-/// Adjusts the p values by Holm. A pair has no p if nobody felt both methods; such pairs are left
-/// out.
-void adjust(std::vector<MethodPair>& pairs) {
+/// Adjusts p by Holm, except for pairs without p, because nobody felt both methods.
+void adjust_by_holm(std::vector<MethodPair>& pairs) {
   std::vector<MethodPair*> family;
   std::vector<double> p_values;
   for (MethodPair& pair : pairs) {
@@ -298,19 +296,19 @@ void adjust(std::vector<MethodPair>& pairs) {
   for (std::size_t i = 0; i < family.size(); ++i) family[i]->p_holm = adjusted[i];
 }
 
-/// Adds one participant's occasions with a class. The n-th occasion is the n-th presentation of the
-/// class with every method; it says whether each of these answers was right.
-void add_occasions(int class_index, const std::vector<const OwnTrials*>& methods,
+/// Adds one participant's occasions with a class. The n-th occasion contains, by method, whether
+/// the answer to the n-th presentation of the class was right.
+void add_occasions(int class_index, const std::vector<const PersonTrials*>& methods,
                    std::vector<std::vector<bool>>& occasions) {
-  std::vector<OwnTrials> own;
+  std::vector<PersonTrials> selected;
   std::size_t common = methods.front()->size();
-  for (const OwnTrials* trials : methods) {
-    own.push_back(of_class(*trials, class_index));
-    common = std::min(common, own.back().size());
+  for (const PersonTrials* trials : methods) {
+    selected.push_back(trials_of_class(*trials, class_index));
+    common = std::min(common, selected.back().size());
   }
   for (std::size_t n = 0; n < common; ++n) {
     std::vector<bool>& occasion = occasions.emplace_back();
-    for (const OwnTrials& trials : own) occasion.push_back(trials[n]->correct());
+    for (const PersonTrials& trials : selected) occasion.push_back(trials[n]->correct());
   }
 }
 
@@ -318,17 +316,16 @@ std::vector<std::vector<std::vector<bool>>> occasions_by_participant(int classes
                                                                      const CountedTrials& counted) {
   std::vector<std::vector<std::vector<bool>>> all;
   for (std::size_t i = 0; i < counted.front().size(); ++i) {
-    std::vector<const OwnTrials*> methods;
+    std::vector<const PersonTrials*> methods;
     for (const auto& people : counted) methods.push_back(&people[i].trials);
-    std::vector<std::vector<bool>> own;
-    for (int c = 0; c < classes; ++c) add_occasions(c, methods, own);
-    if (!own.empty()) all.push_back(std::move(own));
+    std::vector<std::vector<bool>> occasions;
+    for (int c = 0; c < classes; ++c) add_occasions(c, methods, occasions);
+    if (!occasions.empty()) all.push_back(std::move(occasions));
   }
   return all;
 }
 
-/// Every pair of methods, in the order of methods. With three or more methods, the p values are
-/// adjusted.
+/// Every pair of methods, in the order of methods; p is adjusted for three or more methods.
 std::vector<MethodPair> method_pairs(int classes, const CountedTrials& counted) {
   const auto methods = static_cast<int>(counted.size());
   std::vector<MethodPair> pairs;
@@ -337,43 +334,45 @@ std::vector<MethodPair> method_pairs(int classes, const CountedTrials& counted) 
       pairs.push_back(method_pair(classes, counted, first, second));
     }
   }
-  if (methods > 2) adjust(pairs);
+  if (methods > 2) adjust_by_holm(pairs);
   return pairs;
 }
 
-/// All methods compared at once.
 /// \return nothing if there are fewer than three methods, or no occasion on which they differ
-std::optional<MethodsTogether> methods_together(int classes, const CountedTrials& counted) {
+std::optional<AllMethodsTest> all_methods_test(int classes, const CountedTrials& counted) {
   if (counted.size() < 3) return std::nullopt;
   const auto by_participant = occasions_by_participant(classes, counted);
   std::vector<std::vector<bool>> occasions;
-  for (const auto& own : by_participant) occasions.insert(occasions.end(), own.begin(), own.end());
+  for (const auto& participant_occasions : by_participant) {
+    occasions.insert(occasions.end(), participant_occasions.begin(), participant_occasions.end());
+  }
   const std::optional<CochranQ> cochran = cochran_q(occasions);
   if (!cochran) return std::nullopt;
-  return MethodsTogether{*cochran, cochran_q_permuted_p(by_participant)};
+  return AllMethodsTest{*cochran, cochran_q_permuted_p(by_participant)};
 }
 
 /// Adjusts the p of label swaps over all participants and methods of the study.
 void adjust_swaps(std::vector<MethodReport>& methods) {
   std::vector<double> p_values;
   for (const MethodReport& method : methods) {
-    for (const ParticipantAccuracy& one : method.per_participant) p_values.push_back(one.swap_p);
+    for (const ParticipantAccuracy& participant : method.per_participant)
+      p_values.push_back(participant.swap_p);
   }
   const std::vector<double> adjusted = benjamini_hochberg_adjusted(p_values);
   auto next = adjusted.begin();
   for (MethodReport& method : methods) {
-    for (ParticipantAccuracy& one : method.per_participant) one.swap_adjusted = *next++;
+    for (ParticipantAccuracy& participant : method.per_participant)
+      participant.swap_p_adjusted = *next++;
   }
 }
 
-/// A public report lists participants by their names, which are ranks, and so not in the order of
-/// sessions.
+/// Sorts participants by name, because public reports must not show the order of sessions.
 void order_by_name(StudyReport& report) {
   for (MethodReport& method : report.methods) {
     std::ranges::sort(method.per_participant, {}, &ParticipantAccuracy::participant);
   }
   if (!report.places) return;
-  std::ranges::sort(report.places->own.people, {}, &choices::Preference::participant);
+  std::ranges::sort(report.places->preferences.people, {}, &choices::Preference::participant);
 }
 
 }  // namespace
@@ -384,19 +383,20 @@ StudyReport make_report(const Outcomes& outcomes) {
   StudyReport report;
   static_cast<StudyHead&>(report) = head_of(outcomes);
   for (int i = 0; i < static_cast<int>(outcomes.methods.size()); ++i) {
-    counted.push_back(choices::people_with(outcomes, [i](const TrialOutcome& trial) {
+    counted.push_back(choices::people_with_trials(outcomes, [i](const TrialOutcome& trial) {
       return trial.counted && trial.stimulus.method == i;
     }));
     report.methods.push_back(method_report(outcomes, i, counted.back()));
   }
   adjust_swaps(report.methods);
   report.places = choices::answers_by_place(
-      choices::people_with(outcomes, [](const TrialOutcome& trial) { return trial.counted; }),
+      choices::people_with_trials(outcomes,
+                                  [](const TrialOutcome& trial) { return trial.counted; }),
       classes);
   if (outcomes.collection.is_public) order_by_name(report);
   report.pairs = method_pairs(classes, counted);
   if (report.methods.size() == 2) report.comparison = report.pairs.front().overall;
-  report.together = methods_together(classes, counted);
+  report.all_methods = all_methods_test(classes, counted);
   report.primary = choices::primary_result(outcomes);
   if (report.primary && report.primary->ended_at_look) {
     report.departures = departures_of(outcomes, true);

@@ -17,61 +17,62 @@ namespace {
 
 using WarningTexts = std::vector<std::string>;
 
-constexpr int kSmallCell = 5;
+constexpr int kMaxSmallClass = 5;
 constexpr std::size_t kMaxNames = 5;
-constexpr double kFalseSwaps = 0.05;  ///< rate of false ones among the swaps that are reported
+constexpr double kFalseSwapRate = 0.05;  ///< among reported swaps
 constexpr double kCeiling = 0.95;
 
-/// The first few names of many.
-std::string few(const std::vector<std::string>& names) {
-  const std::size_t shown = std::min(names.size(), kMaxNames);
-  std::string text =
-      fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<long>(shown), ", "));
-  if (shown < names.size()) text += fmt::format(" and {} more", names.size() - shown);
+/// "bark, brick, linen, pebbles, sand and 3 more"
+std::string shortened_list(const std::vector<std::string>& names) {
+  const std::size_t shown_count = std::min(names.size(), kMaxNames);
+  std::string text = fmt::format(
+      "{}", fmt::join(names.begin(), names.begin() + static_cast<long>(shown_count), ", "));
+  if (shown_count < names.size()) text += fmt::format(" and {} more", names.size() - shown_count);
   return text;
 }
 
 void warn_of_small_classes(const MethodReport& method, const std::vector<std::string>& classes,
                            WarningTexts& warnings) {
-  std::vector<std::string> small;
+  std::vector<std::string> small_classes;
   for (std::size_t i = 0; i < classes.size(); ++i) {
     const int n = method.accuracy[i].accuracy.n;
-    if (n > 0 && n <= kSmallCell) small.push_back(classes[i]);
+    if (n > 0 && n <= kMaxSmallClass) small_classes.push_back(classes[i]);
   }
-  if (small.empty()) return;
+  if (small_classes.empty()) return;
   warnings.push_back(
-      fmt::format("{}: accuracy with {} rests on {} trials or fewer, too few for a conclusion.",
-                  method.method, few(small), kSmallCell));
+      fmt::format("{}: accuracy with {} is from {} trials or fewer, too few for a conclusion.",
+                  method.method, shortened_list(small_classes), kMaxSmallClass));
 }
 
 void warn_of_unanswered_classes(const MethodReport& method, const std::vector<std::string>& classes,
                                 WarningTexts& warnings) {
   if (method.confusion.answered() == 0) return;
-  std::vector<std::string> never;
+  std::vector<std::string> unanswered_classes;
   for (int j = 0; j < method.confusion.classes(); ++j) {
-    if (method.confusion.answered(j) == 0) never.push_back(classes[j]);
+    if (method.confusion.answered(j) == 0) unanswered_classes.push_back(classes[j]);
   }
-  if (never.empty()) return;
+  if (unanswered_classes.empty()) return;
   warnings.push_back(
-      fmt::format("{}: {} was never answered; accuracy with it reflects preference as much as "
+      fmt::format("{}: {} was never answered; its accuracy reflects preference as much as "
                   "sensitivity, and there is no choice model.",
-                  method.method, few(never)));
+                  method.method, shortened_list(unanswered_classes)));
 }
 
 void warn_of_swapped_labels(const MethodReport& method, WarningTexts& warnings) {
   std::vector<std::string> suspects;
-  for (const ParticipantAccuracy& one : method.per_participant) {
-    if (one.swap_adjusted > kFalseSwaps) continue;
-    suspects.push_back(fmt::format("{} ({}, but {} under the best exchange)", one.participant,
-                                   share_figure(one.accuracy.share()),
-                                   share_figure(one.matching.accuracy.share())));
+  for (const ParticipantAccuracy& participant : method.per_participant) {
+    if (participant.swap_p_adjusted > kFalseSwapRate) continue;
+    suspects.push_back(fmt::format("{} ({}, but {} under the best exchange)",
+                                   participant.participant,
+                                   share_figure(participant.accuracy.share()),
+                                   share_figure(participant.matching.accuracy.share())));
   }
   if (suspects.empty()) return;
   warnings.push_back(
       fmt::format("{}: labels may have been swapped by {}; consistency is then more informative "
                   "than accuracy. If nobody swaps labels, this warning appears with a probability "
                   "of at most 0.05 (Benjamini, Hochberg 1995, over all participants).",
-                  method.method, few(suspects)));
+                  method.method, shortened_list(suspects)));
 }
 
 void warn_of_chance(const MethodReport& method, WarningTexts& warnings) {
@@ -79,8 +80,8 @@ void warn_of_chance(const MethodReport& method, WarningTexts& warnings) {
   const double floor = 1.0 / (method.chance->deals + 1.0);
   if (method.chance->p > 1.5 * floor) return;
   warnings.push_back(
-      fmt::format("{}: the chance test's p = {} is the smallest that {} deals can give; the true "
-                  "one may be smaller.",
+      fmt::format("{}: the chance test's p = {} is the smallest possible with {} deals; the true p "
+                  "may be smaller.",
                   method.method, p_value(method.chance->p), method.chance->deals));
 }
 
@@ -104,22 +105,21 @@ void warn_of_choice_model(const MethodReport& method, WarningTexts& warnings) {
                      ": the choice model did not converge; do not quote its estimates.");
 }
 
-/// Warns if the headline depends on trials that do not meet the study's own rule.
 void warn_of_validity(const MethodReport& method, WarningTexts& warnings) {
-  const auto of = [&](TrialSubset subset) {
+  const auto accuracy_of = [&](TrialSubset subset) {
     return std::ranges::find(method.robustness, subset, &SubsetAccuracy::subset);
   };
-  const auto all = of(TrialSubset::counted);
-  const auto valid = of(TrialSubset::valid);
+  const auto all = accuracy_of(TrialSubset::counted);
+  const auto valid = accuracy_of(TrialSubset::valid);
   if (all == method.robustness.end() || valid == method.robustness.end()) return;
   const int invalid = all->pooled.n - valid->pooled.n;
   if (invalid == 0) return;
   if (!valid->mean.mean) {
-    warnings.push_back(method.method + ": no trial at all is valid by the study's rule.");
+    warnings.push_back(method.method + ": no trial is valid by the study's rule.");
     return;
   }
   warnings.push_back(fmt::format(
-      "{}: without {} not valid by the study's rule the mean over participants is {} in place of "
+      "{}: without {} not valid by the study's rule, the mean over participants is {} instead of "
       "{}.",
       method.method, counted(invalid, "trial"), share_figure(valid->mean.mean),
       share_figure(all->mean.mean)));
@@ -128,13 +128,13 @@ void warn_of_validity(const MethodReport& method, WarningTexts& warnings) {
 void warn_of_order(const Outcomes& outcomes, WarningTexts& warnings) {
   if (outcomes.design.trials.order != study::TrialOrder::uniform) return;
   warnings.emplace_back(
-      "Classes were drawn independently and so presented unequally often; pooled accuracy weights "
-      "them accordingly.");
+      "Classes were drawn independently and thus presented unequally often; pooled accuracy "
+      "weights them accordingly.");
 }
 
 constexpr int kFewParticipants = 10;
 
-/// Warns of the smallest p that n participants can give. All 2^n sign patterns are equally likely,
+/// Warns of the smallest possible p with n participants. All 2^n sign patterns are equally likely,
 /// and Holm multiplies the smallest p by the number of pairs. Powers of two print exactly.
 void warn_of_floor(int n, std::size_t pairs, WarningTexts& warnings) {
   const double floor = std::ldexp(2.0, -n);
@@ -142,51 +142,52 @@ void warn_of_floor(int n, std::size_t pairs, WarningTexts& warnings) {
   if (adjusted <= kUsualLevel) return;
   std::string text =
       fmt::format("With {} the sign-flip p cannot fall below {}", counted(n, "participant"), floor);
-  if (pairs > 1) text += fmt::format(", nor the least p adjusted by Holm below {}", adjusted);
-  warnings.push_back(text + ", whatever the data.");
+  if (pairs > 1)
+    text += fmt::format(", and the smallest p adjusted by Holm not below {}", adjusted);
+  warnings.push_back(text + ", regardless of the data.");
 }
 
-/// Warns of the smallest p that the pair with the fewest participants can give.
 void warn_of_sign_flips(const StudyReport& report, WarningTexts& warnings) {
   int n = 0;
   for (const MethodPair& pair : report.pairs) {
-    const int own = pair.overall.participants;
-    if (own > 0 && (n == 0 || own < n)) n = own;
+    const int participants = pair.overall.participants;
+    if (participants > 0 && (n == 0 || participants < n)) n = participants;
   }
   if (n > 0) warn_of_floor(n, report.pairs.size(), warnings);
-  const auto at_floor = [](const MethodPair& pair) {
+  const auto is_at_floor = [](const MethodPair& pair) {
     constexpr double kFloor = 1.5e-5;  // 1.5 times the smallest p of 99,999 patterns
     return pair.overall.participants > kExactSignFlips && pair.overall.p.value_or(1.0) < kFloor;
   };
-  if (std::ranges::any_of(report.pairs, at_floor)) {
+  if (std::ranges::any_of(report.pairs, is_at_floor)) {
     warnings.emplace_back(
-        "A sign-flip p of 1e-05 is the smallest that 99,999 random patterns can give; the true one "
+        "A sign-flip p of 1e-05 is the smallest possible with 99,999 random patterns; the true p "
         "may be smaller.");
   }
 }
 
-/// Methods in blocks: whatever is not adjusted for the period has its effect in its error.
+/// With methods in blocks, the error of tests without adjustment includes the effect of the period.
 void warn_of_periods(const Outcomes& outcomes, const StudyReport& report, WarningTexts& warnings) {
   if (report.pairs.empty() || outcomes.design.trials.blocks == study::Blocks::mixed) return;
   const std::string effect = "learning or fatigue widens intervals and raises p.";
-  const bool adjusts = report.primary && report.primary->crossover;
-  warnings.push_back("Methods came one after the other. " +
-                     (adjusts ? "The deciding test adjusts for the period; differences and sign "
-                                "flips in the comparison of methods do not: " +
-                                    effect
-                              : "No test here adjusts for the period: " + effect));
+  const bool is_adjusted = report.primary && report.primary->crossover;
+  warnings.push_back("Methods were presented in blocks. " +
+                     (is_adjusted
+                          ? "The deciding test adjusts for the period; differences and sign "
+                            "flips in the comparison of methods do not: " +
+                                effect
+                          : "No test here adjusts for the period: " + effect));
 }
 
-void warn_of_several(const StudyReport& report, WarningTexts& warnings) {
+void warn_of_several_methods(const StudyReport& report, WarningTexts& warnings) {
   if (report.methods.size() < 3) return;
   warnings.push_back(
       fmt::format("{} methods make {} pairs: quote the p adjusted by Holm; the p of single classes "
                   "are not adjusted.",
                   report.methods.size(), report.pairs.size()));
-  if (report.together) {
+  if (report.all_methods) {
     warnings.emplace_back(
-        "Cochran's Q: its p under chi-square takes a participant's trials as independent; quote "
-        "the permuted p.");
+        "Cochran's Q: p under chi-square treats a participant's trials as independent; quote the "
+        "permuted p.");
   }
 }
 
@@ -207,21 +208,21 @@ void warn_of_few_participants(const StudyReport& report, WarningTexts& warnings)
                   report.participants));
 }
 
-template <typename Which>
-void warn_of_sessions(const Outcomes& outcomes, const std::string& why, Which which,
+template <typename Predicate>
+void warn_of_sessions(const Outcomes& outcomes, const std::string& reason, Predicate is_affected,
                       WarningTexts& warnings) {
-  const auto n = std::count_if(outcomes.sessions.begin(), outcomes.sessions.end(),
-                               [&](const SessionOutcome& one) { return which(one.row); });
-  if (n > 0) warnings.push_back(fmt::format("Left out: {}, {}.", counted(n, "session"), why));
+  const auto n = std::ranges::count_if(
+      outcomes.sessions, [&](const SessionOutcome& session) { return is_affected(session.row); });
+  if (n > 0) warnings.push_back(fmt::format("Left out: {}, {}.", counted(n, "session"), reason));
 }
 
 void warn_of_state(const Outcomes& outcomes, WarningTexts& warnings) {
   const std::string unadjusted = unadjusted_words(outcomes.look_record.looks);
   if (!unadjusted.empty()) warnings.push_back("Looks at outcomes before the end: " + unadjusted);
-  if (outcomes.pilot) warnings.emplace_back("A pilot: not to be pooled with the study's data.");
+  if (outcomes.pilot) warnings.emplace_back("A pilot: do not pool with the study's data.");
   if (outcomes.visual) {
     warnings.emplace_back(
-        "Seen on a screen, not felt, and so not blind: never to be pooled with what was felt.");
+        "Textures were seen on a screen, so not blind: do not pool with data from touch.");
   }
   if (!outcomes.state.closed) {
     warnings.emplace_back(
@@ -229,13 +230,13 @@ void warn_of_state(const Outcomes& outcomes, WarningTexts& warnings) {
         "ends.");
   }
   if (outcomes.sessions_unseen > 0) {
-    warnings.push_back(
-        fmt::format("Left out: {}, not ended before the interim look; `touchtrial unblind` again "
-                    "to see more.",
-                    counted(outcomes.sessions_unseen, "session")));
+    warnings.push_back(fmt::format(
+        "Left out: {}, not ended before the interim look; run `touchtrial unblind` again "
+        "to see more.",
+        counted(outcomes.sessions_unseen, "session")));
   }
   warn_of_sessions(
-      outcomes, "erased at the participant's wish",
+      outcomes, "erased at the participant's request",
       [](const record::SessionRow& row) { return row.erased; }, warnings);
   warn_of_sessions(
       outcomes, "excluded",
@@ -247,7 +248,7 @@ void warn_of_state(const Outcomes& outcomes, WarningTexts& warnings) {
       },
       warnings);
   warn_of_sessions(
-      outcomes, "a pilot or simulation among others",
+      outcomes, "a pilot or simulation",
       [&](const record::SessionRow& row) {
         return row.state == record::SessionState::completed && !row.excluded && !row.erased &&
                (row.pilot != outcomes.pilot || row.simulated != outcomes.simulated);
@@ -256,12 +257,12 @@ void warn_of_state(const Outcomes& outcomes, WarningTexts& warnings) {
 }
 
 void warn_of_trials(const Outcomes& outcomes, WarningTexts& warnings) {
-  const std::set<int> counting = choices::counted_sessions(outcomes);
-  const auto unfinished = [&](const TrialOutcome& trial) {
-    return trial.scored && !trial.counted && counting.contains(trial.row.session);
+  const std::set<int> session_numbers = choices::counted_sessions(outcomes);
+  const auto is_unfinished = [&](const TrialOutcome& trial) {
+    return trial.scored && !trial.counted && session_numbers.contains(trial.row.session);
   };
   const auto interrupted =
-      std::count_if(outcomes.trials.begin(), outcomes.trials.end(), unfinished);
+      std::count_if(outcomes.trials.begin(), outcomes.trials.end(), is_unfinished);
   if (interrupted > 0) {
     warnings.push_back(fmt::format("Left out: {}, interrupted and never repeated.",
                                    counted(interrupted, "trial")));
@@ -270,7 +271,7 @@ void warn_of_trials(const Outcomes& outcomes, WarningTexts& warnings) {
       std::count_if(outcomes.trials.begin(), outcomes.trials.end(),
                     [](const TrialOutcome& trial) { return trial.counted && !trial.valid(); });
   if (invalid > 0) {
-    warnings.push_back(fmt::format("Counted although not valid by the study's rule: {}.",
+    warnings.push_back(fmt::format("Counted, although not valid by the study's rule: {}.",
                                    counted(invalid, "trial")));
   }
 }
@@ -281,14 +282,14 @@ void warn_of_time_outs(const StudyReport& report, WarningTexts& warnings) {
     const int missed = method.overall.n - answered;
     if (missed == 0) continue;
     warnings.push_back(fmt::format(
-        "{}: {} without a response, counted as wrong; with them excluded {} of {} are correct.",
+        "{}: {} without a response, counted as wrong; without these, {} of {} are correct.",
         method.method, counted(missed, "trial"), method.overall.correct, answered));
   }
 }
 
 void warn_of_participants(const StudyReport& report, WarningTexts& warnings) {
   if (report.participants == 0) {
-    warnings.emplace_back("No participant's session counts: there are no results yet.");
+    warnings.emplace_back("No session counts yet, so there are no results.");
   } else if (report.participants == 1) {
     warnings.emplace_back(
         "One participant: there are no intervals over participants, and intervals of single "
@@ -304,38 +305,37 @@ void warn_of_participants(const StudyReport& report, WarningTexts& warnings) {
 }
 
 void warn_of_information(const StudyReport& report, WarningTexts& warnings) {
-  const int wanted = trials_for_information_transfer(static_cast<int>(report.classes.size()));
+  const int minimum = trials_for_information_transfer(static_cast<int>(report.classes.size()));
   for (const MethodReport& method : report.methods) {
     const int answered = method.confusion.answered();
-    if (answered == 0 || answered >= wanted) continue;
+    if (answered == 0 || answered >= minimum) continue;
     warnings.push_back(fmt::format(
         "{}: information transfer from {} is biased upward; {} are the usual minimum for {} "
         "classes.",
-        method.method, counted(answered, "trial"), wanted, report.classes.size()));
+        method.method, counted(answered, "trial"), minimum, report.classes.size()));
   }
 }
 
-/// Somebody who prefers a picture is right with it more often than sensitivity allows, and less
-/// often with all others.
+/// Participants who prefer a picture are right with it more often than sensitivity permits, and
+/// less often with all others.
 void warn_of_preferences(const StudyReport& report, WarningTexts& warnings) {
   if (!report.places) return;
-  const choices::Preferences& own = report.places->own;
-  const std::string who = choices::preference_words(own, report.classes);
-  if (!who.empty()) {
-    std::string text = fmt::format("{} ({}, by people).", who, p_phrase(own.anybody.p));
-    if (!own.of_those_who_prefer().empty()) {
+  const choices::Preferences& preferences = report.places->preferences;
+  const std::string preferred = choices::preference_words(preferences, report.classes);
+  if (!preferred.empty()) {
+    std::string text = fmt::format("{} ({}, global test over participants).", preferred,
+                                   p_phrase(preferences.global_null.p));
+    if (!preferences.people_with_preference().empty()) {
       text +=
           " Whether they prefer the picture or its place cannot be determined; their accuracy with "
-          "a "
-          "texture reflects the preference as much as sensitivity.";
+          "a texture reflects preference as much as sensitivity.";
     }
     warnings.push_back(std::move(text));
   }
   if (report.places->p > kUsualLevel) return;
   warnings.push_back(
       fmt::format("Participants preferred places on the screen ({}, permutation of layouts): "
-                  "answers that follow "
-                  "the place are right only by chance, so accuracy is too low.",
+                  "answers that follow the place are right only by chance, so accuracy is too low.",
                   p_phrase(report.places->p)));
 }
 
@@ -359,7 +359,7 @@ std::vector<std::string> report_warnings(const Outcomes& outcomes, const StudyRe
   warn_of_preferences(report, warnings);
   warn_of_order(outcomes, warnings);
   warn_of_few_participants(report, warnings);
-  warn_of_several(report, warnings);
+  warn_of_several_methods(report, warnings);
   warn_of_sign_flips(report, warnings);
   warn_of_periods(outcomes, report, warnings);
   warn_of_images(outcomes, report, warnings);

@@ -22,7 +22,7 @@
 namespace touchtrial::planning::identification {
 namespace {
 
-/// A digest of every field that may be felt, and of nothing else in the pack.
+/// A digest of the fields of the pack that participants may feel.
 std::string fields_digest(const study::StudyKey& key, const engine::Pack& pack) {
   FieldHasher hasher;
   for (const study::KeyedStimulus& keyed : key.stimuli) {
@@ -34,26 +34,26 @@ std::string fields_digest(const study::StudyKey& key, const engine::Pack& pack) 
   return to_hex(hasher.finish());
 }
 
-/// The input of the simulated studies.
 struct PowerPreparation {
-  PowerPreparation(const study::Study& of, const PowerOptions& options, const PowerTools& tools)
-      : study(of),
+  PowerPreparation(const study::Study& planned_study, const PowerOptions& options,
+                   const PowerTools& tools)
+      : study(planned_study),
         test(test_for(study, options)),
-        stated(stated_by(options, test)),
-        subject(stated ? simulation::SubjectModel{} : tools.subject()),
+        assumed_people(stated_people(options, test)),
+        subject(assumed_people ? simulation::SubjectModel{} : tools.subject()),
         key(tools.key()) {
-    if (stated) return;
+    if (assumed_people) return;
     tools.prepare(key);
     pack.emplace(key.pack_folder);
   }
 
   static PrimaryTest test_for(const study::Study& study, const PowerOptions& options) {
     const PrimaryTest test = primary_test_of(study, labels(options));
-    return options.margin ? with_margin(test, *options.margin) : test;
+    return options.margin ? as_noninferiority_test(test, *options.margin) : test;
   }
 
-  static std::optional<StatedPeople> stated_by(const PowerOptions& options,
-                                               const PrimaryTest& test) {
+  static std::optional<StatedPeople> stated_people(const PowerOptions& options,
+                                                   const PrimaryTest& test) {
     if (!options.mean) return std::nullopt;
     const StatedPeople people{*options.mean, options.sd_between, options.accuracy};
     require_possible(people, test);
@@ -73,16 +73,16 @@ struct PowerPreparation {
             estimate_words(test),
             to_hex(key.seal),
             pack ? fields_digest(key, *pack) : std::string(kNoFields),
-            stated ? words_of(*stated) : planning::words_of(subject),
+            assumed_people ? words_of(*assumed_people) : planning::words_of(subject),
             std::string(program_version()),
             study.trials.order != study::TrialOrder::uniform,
             analysis::device_words(
-                {stated ? analysis::kStatedPeople : simulation::recorded_device(subject)})};
+                {assumed_people ? analysis::kStatedPeople : simulation::recorded_device(subject)})};
   }
 
   const study::Study& study;
   PrimaryTest test;
-  std::optional<StatedPeople> stated;  ///< if set, nobody feels anything, and there is no pack
+  std::optional<StatedPeople> assumed_people;  ///< if set, there are no stimuli and no pack
   simulation::SubjectModel subject;
   study::StudyKey key;
   std::optional<engine::Pack> pack;
@@ -90,20 +90,21 @@ struct PowerPreparation {
 
 PowerRuns run_plan(const PowerPreparation& prepared, const PowerPlan& plan, int jobs,
                    const PowerTools& tools) {
-  const study::Progress bar = tools.progress("simulating");
+  const study::Progress progress = tools.progress("simulating");
   const int max_participants = plan.participants.back();
-  if (prepared.stated) {
-    const StatedRehearsal study(prepared.study, *prepared.stated, prepared.test, max_participants);
-    return make_runs(study, prepared.test, prepared.setting(), plan, jobs, bar);
+  if (prepared.assumed_people) {
+    const StatedRehearsal study(prepared.study, *prepared.assumed_people, prepared.test,
+                                max_participants);
+    return make_runs(study, prepared.test, prepared.setting(), plan, jobs, progress);
   }
   const session::StimulusSource source(*prepared.pack, prepared.key.study.rendering);
   const simulation::LabelledFields fields(prepared.key, source);
-  const BankedFeelings feelings(fields, prepared.study, prepared.subject,
-                                {plan.explorations, plan.trainings, plan.seed, jobs},
-                                tools.progress("feeling"));
-  const RehearsedStudy study(prepared.study, prepared.subject, prepared.test, feelings,
+  const PrecomputedPerception perception(fields, prepared.study, prepared.subject,
+                                         {plan.explorations, plan.trainings, plan.seed, jobs},
+                                         tools.progress("feeling"));
+  const RehearsedStudy study(prepared.study, prepared.subject, prepared.test, perception,
                              max_participants);
-  return make_runs(study, prepared.test, prepared.setting(), plan, jobs, bar);
+  return make_runs(study, prepared.test, prepared.setting(), plan, jobs, progress);
 }
 
 class IdentificationPlanner final : public Planner {
@@ -115,14 +116,14 @@ class IdentificationPlanner final : public Planner {
     return kOptions;
   }
 
-  std::string power(const study::Study& study, const PowerOptions& options,
+  PowerResult power(const study::Study& study, const PowerOptions& options,
                     const PowerTools& tools) const override {
     const PowerPreparation prepared(study, options, tools);
     PowerPlan plan = options.plan;
     plan.level = prepared.test.alpha;
     plan.margin = prepared.test.margin.value_or(0.0);
     const PowerReport report = make_power_report(run_plan(prepared, plan, options.jobs, tools));
-    return options.json ? power_json(report) : power_text(report);
+    return {options.json ? power_json(report) : power_text(report), power_curve(report)};
   }
 };
 

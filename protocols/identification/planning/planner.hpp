@@ -1,4 +1,4 @@
-/// \file The planning of classification and comparison.
+/// \file Planning of the protocols classification and comparison.
 #pragma once
 
 #include "analysis/planning/planner.hpp"

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -32,7 +33,7 @@ Moments moments_of(const std::vector<double>& values) {
   return moments;
 }
 
-analysis::Proportion significant_of(const PowerCell& cell, double level) {
+analysis::Proportion count_significant(const PowerCell& cell, double level) {
   const auto significant = std::ranges::count_if(
       cell.runs, [level](const PowerRun& run) { return is_significant(run, level); });
   return {static_cast<int>(cell.runs.size()), static_cast<int>(significant)};
@@ -54,7 +55,7 @@ PowerRow row_of(const PowerRuns& power, const PowerCell& population, const Power
   row.has_fixed_counts = power.setting.has_fixed_counts;
   row.level = plan.level;
   row.participants = population.participants;
-  row.significant = significant_of(population, plan.level);
+  row.significant = count_significant(population, plan.level);
   row.power = analysis::wilson_interval(row.significant);
   std::vector<double> estimates;
   for (const PowerRun& run : population.runs) estimates.push_back(run.estimate);
@@ -62,7 +63,7 @@ PowerRow row_of(const PowerRuns& power, const PowerCell& population, const Power
   row.estimate = moments.mean;
   row.estimate_sd = moments.sd;
   row.width = widths_of(population);
-  row.false_alarms = significant_of(null, plan.level);
+  row.false_alarms = count_significant(null, plan.level);
   row.type_one = analysis::wilson_interval(row.false_alarms);
   std::vector<double> attainable;
   for (const PowerRun& run : null.runs) attainable.push_back(run.attainable);
@@ -74,11 +75,11 @@ PowerRow row_of(const PowerRuns& power, const PowerCell& population, const Power
   return row;
 }
 
-/// The smallest size for which, and for all larger ones, `holds` is true.
-template <typename Holds>
-std::optional<int> smallest_size(const std::vector<PowerRow>& rows, const Holds& holds) {
+/// The smallest size such that it and all larger sizes meet the condition.
+template <typename Condition>
+std::optional<int> smallest_size(const std::vector<PowerRow>& rows, const Condition& condition) {
   std::optional<int> smallest;
-  for (auto row = rows.rbegin(); row != rows.rend() && holds(*row); ++row) {
+  for (auto row = rows.rbegin(); row != rows.rend() && condition(*row); ++row) {
     smallest = row->participants;
   }
   return smallest;
@@ -95,28 +96,29 @@ std::vector<std::string> warnings_of(const PowerReport& report) {
   for (const PowerRow& row : report.rows) {
     if (verdict_of(row) == ErrorVerdict::excessive) {
       warnings.push_back(fmt::format(
-          "With {} participants the type-I error lies above the level of the test: the test does "
-          "not keep its level in this study.",
+          "With {} participants the type-I error exceeds the level of the test, so the test is not "
+          "valid in this study.",
           row.participants));
     }
     if (row.attainable == 0.0) {
       warnings.push_back(fmt::format(
-          "With {} participants the test could not be significant in any of the runs under the "
-          "null.",
+          "With {} participants the test cannot be significant in any run under the null "
+          "hypothesis.",
           row.participants));
     }
   }
-  const auto all = [&](const auto& holds) { return std::ranges::all_of(report.rows, holds); };
-  if (all([](const PowerRow& row) { return row.significant.correct == row.significant.n; })) {
+  const bool always_significant = std::ranges::all_of(report.rows, [](const PowerRow& row) {
+    return row.significant.correct == row.significant.n;
+  });
+  if (always_significant) {
     warnings.emplace_back(
-        "Every simulated study of every size was significant: if people are as sensitive as "
-        "assumed, the smallest size is enough for this test; choose the size by the width of the "
+        "Every simulated study of every size was significant. If people are as sensitive as "
+        "assumed, the smallest size suffices for this test; choose the size by the width of the "
         "interval.");
   }
   return warnings;
 }
 
-/// The condition on which the power depends.
 std::string condition_words(const PowerSetting& setting) {
   if (!setting.feels()) return "given the stated accuracies";
   return "given the assumed sensitivity";
@@ -150,35 +152,33 @@ std::string null_sentence(const PowerReport& report) {
                "with the same biases and lapses.";
 }
 
-constexpr const char* kBankSentence =
-    "Monte-Carlo intervals do not include the error of these explorations and trainings, which are "
-    "common to all studies; to see it, use other seeds. More runs do not reduce it.";
+constexpr const char* kExplorationErrorSentence =
+    "Monte-Carlo intervals do not include the error due to these explorations and trainings, which "
+    "are common to all studies. More runs do not reduce it; to estimate it, use other seeds.";
 
-constexpr const char* kOrdersSentence =
+constexpr const char* kUnbalancedOrdersSentence =
     "Orders of this study do not present every class equally often: all numbers, especially type-I "
-    "errors, hold for the orders drawn by this study's seed; another seed gives other orders.";
+    "errors, hold only for the orders drawn by this study's seed; another seed gives other orders.";
 
-/// One sentence for each target.
 std::vector<std::string> target_sentences(const PowerReport& report) {
   std::vector<std::string> sentences;
   for (const TargetSize& target : report.targets) {
     const std::string power = fmt::format("{:.0f} % power", 100.0 * target.target);
     if (!target.smallest) {
-      sentences.push_back(power + ": no size given reaches it.");
-    } else if (target.surely == target.smallest) {
+      sentences.push_back(power + ": no given size reaches it.");
+    } else if (target.smallest_certain == target.smallest) {
       sentences.push_back(fmt::format("{}: {} participants.", power, *target.smallest));
     } else {
       sentences.push_back(fmt::format(
           "{}: {} participants by the estimate; {}.", power, *target.smallest,
-          target.surely
-              ? fmt::format("{} beyond Monte-Carlo error", *target.surely)
+          target.smallest_certain
+              ? fmt::format("{} beyond Monte-Carlo error", *target.smallest_certain)
               : std::string("no size exceeds it beyond Monte-Carlo error; use more runs")));
     }
   }
   return sentences;
 }
 
-/// Describes how the numbers were obtained.
 std::vector<std::string> method_sentences(const PowerReport& report) {
   const PowerPlan& plan = report.plan;
   std::vector<std::string> sentences;
@@ -191,9 +191,9 @@ std::vector<std::string> method_sentences(const PowerReport& report) {
                               : fmt::format("features are drawn from {} explorations of each "
                                             "stimulus and {} trainings through the servo.",
                                             plan.explorations, plan.trainings)));
-  if (report.setting.feels()) sentences.push_back(kBankSentence);
+  if (report.setting.feels()) sentences.push_back(kExplorationErrorSentence);
   sentences.push_back(null_sentence(report));
-  if (!report.setting.has_fixed_counts) sentences.push_back(kOrdersSentence);
+  if (!report.setting.has_fixed_counts) sentences.push_back(kUnbalancedOrdersSentence);
   const bool is_exact = std::ranges::any_of(
       report.rows, [](const PowerRow& row) { return row.attainable != row.level; });
   sentences.push_back(
@@ -220,9 +220,9 @@ std::string power_table(const PowerReport& report) {
 }
 
 std::string width_table(const PowerReport& report) {
-  const bool compares = report.setting.estimate == kDifferenceWords;
-  analysis::TextTable table({"participants", compares ? "difference" : "accuracy", "SD of studies",
-                             "width", "MC error", "10%", "median", "90%"});
+  const bool is_comparison = report.setting.estimate == kDifferenceWords;
+  analysis::TextTable table({"participants", is_comparison ? "difference" : "accuracy",
+                             "SD of studies", "width", "MC error", "10%", "median", "90%"});
   for (const PowerRow& row : report.rows) {
     const WidthFigures& width = row.width;
     table.add({std::to_string(row.participants), power_per_cent(row.estimate),
@@ -235,7 +235,7 @@ std::string width_table(const PowerReport& report) {
 
 using nlohmann::ordered_json;
 
-ordered_json ends_of(const analysis::Interval& interval) {
+ordered_json interval_json(const analysis::Interval& interval) {
   return ordered_json::array({interval.low, interval.high});
 }
 
@@ -244,10 +244,10 @@ ordered_json size_object(const PowerRow& row) {
   object["power"] = {{"runs", row.significant.n},
                      {"significant", row.significant.correct},
                      {"p", row.estimated_power()},
-                     {"interval", ends_of(row.power)}};
+                     {"interval", interval_json(row.power)}};
   object["type_one_error"] = {
       {"runs", row.false_alarms.n},   {"significant", row.false_alarms.correct},
-      {"p", row.estimated_error()},   {"interval", ends_of(row.type_one)},
+      {"p", row.estimated_error()},   {"interval", interval_json(row.type_one)},
       {"attainable", row.attainable}, {"verdict", name_of(verdict_of(row))}};
   object["estimate"] = {{"mean", row.estimate}, {"sd_between_studies", row.estimate_sd}};
   object["interval_width"] = {
@@ -264,7 +264,7 @@ ordered_json target_object(const TargetSize& target) {
   };
   return {{"power", target.target},
           {"smallest", size(target.smallest)},
-          {"surely", size(target.surely)}};
+          {"surely", size(target.smallest_certain)}};
 }
 
 ordered_json plan_object(const PowerPlan& plan) {
@@ -309,6 +309,14 @@ PowerReport make_power_report(const PowerRuns& power) {
   }
   report.warnings = warnings_of(report);
   return report;
+}
+
+PowerCurve power_curve(const PowerReport& report) {
+  PowerSeries series;
+  for (const PowerRow& row : report.rows) {
+    series.points.push_back({row.participants, row.significant});
+  }
+  return {report.setting.study, "significant primary test", {std::move(series)}};
 }
 
 std::string power_stamp(const PowerSetting& setting) {

@@ -2,6 +2,7 @@
 /// docs/planning.md.
 #pragma once
 
+#include "analysis/planning/power_curve.hpp"
 #include "analysis/statistics/proportion.hpp"
 #include "protocols/identification/planning/power_runs.hpp"
 
@@ -20,15 +21,15 @@ struct WidthFigures {
   double upper = 0.0;  ///< 90 % quantile
 };
 
-/// The results for one size.
+/// The results for one number of participants.
 struct PowerRow {
   int participants = 0;
-  analysis::Proportion significant;  ///< under Hypothesis::population
+  analysis::Proportion significant;  ///< significant runs under Hypothesis::population
   analysis::Interval power{};        ///< Wilson, 95 %
   double estimate = 0.0;             ///< mean over runs
   double estimate_sd = 0.0;          ///< between runs
   WidthFigures width;
-  analysis::Proportion false_alarms;  ///< significant runs under the null
+  analysis::Proportion false_alarms;  ///< significant runs under Hypothesis::null
   analysis::Interval type_one{};      ///< Wilson, 95 %
   double attainable = 0.0;            ///< mean of PowerRun::attainable
   bool has_fixed_counts = true;       ///< as in PowerSetting
@@ -38,12 +39,12 @@ struct PowerRow {
   [[nodiscard]] double estimated_error() const { return false_alarms.share().value_or(0.0); }
 };
 
-/// How the type-I error compares with the test's level.
+/// The type-I error in relation to the test's level.
 enum class ErrorVerdict {
-  holds,         ///< the interval overlaps the range from attainable to the level
+  holds,         ///< the interval overlaps the range from the attainable error to the level
   conservative,  ///< the interval lies below the attainable error
   excessive,     ///< the interval lies above the level
-  conditional,   ///< no verdict: the error depends on the orders of this study's seed
+  conditional,   ///< the error depends on the orders drawn by this study's seed
 };
 [[nodiscard]] ErrorVerdict verdict_of(const PowerRow& row) noexcept;
 [[nodiscard]] std::string_view name_of(ErrorVerdict verdict);
@@ -51,8 +52,9 @@ enum class ErrorVerdict {
 /// The sizes that reach a power.
 struct TargetSize {
   double target = 0.0;
-  std::optional<int> smallest;  ///< this and all larger sizes reach it by their estimates
-  std::optional<int> surely;    ///< this and all larger sizes reach it by their whole intervals
+  std::optional<int> smallest;  ///< the estimates of this and all larger sizes reach the target
+  std::optional<int>
+      smallest_certain;  ///< the intervals of this and all larger sizes lie above the target
 };
 
 struct PowerReport {
@@ -65,10 +67,12 @@ struct PowerReport {
 
 [[nodiscard]] PowerReport make_power_report(const PowerRuns& power);
 
-/// The stamp of all output of a power analysis, with the condition on which the power depends.
+/// The stamp of all output, with the condition under which the power holds.
 [[nodiscard]] std::string power_stamp(const PowerSetting& setting);
 
-/// The report as tables for a terminal. This and the JSON end with a line feed.
+[[nodiscard]] PowerCurve power_curve(const PowerReport& report);
+
+/// Tables for a terminal, ending with a line feed.
 [[nodiscard]] std::string power_text(const PowerReport& report);
 [[nodiscard]] std::string power_json(const PowerReport& report);
 

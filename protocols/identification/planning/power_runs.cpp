@@ -12,12 +12,11 @@
 namespace touchtrial::planning::identification {
 namespace {
 
-/// The number of runs between two reports of progress.
-constexpr int kBlock = 50;
+constexpr int kRunsPerBlock = 50;
 
-void make_block(const Rehearsal& study, const PrimaryTest& test, const PowerPlan& plan, int jobs,
-                int first, PowerCell& cell) {
-  const int end = std::min(plan.runs, first + kBlock);
+void run_block(const Rehearsal& study, const PrimaryTest& test, const PowerPlan& plan, int jobs,
+               int first, PowerCell& cell) {
+  const int end = std::min(plan.runs, first + kRunsPerBlock);
   in_parallel(jobs, static_cast<std::size_t>(end - first), [&](std::size_t i) {
     const int run = first + static_cast<int>(i);
     const std::uint64_t seed = study_seed(plan.seed, cell.participants, cell.hypothesis, run);
@@ -37,7 +36,7 @@ std::uint64_t study_seed(std::uint64_t seed, int participants, Hypothesis hypoth
 
 PowerRuns make_runs(const Rehearsal& study, const PrimaryTest& test, PowerSetting setting,
                     const PowerPlan& plan, int jobs,
-                    const std::function<void(int done, int of)>& progress) {
+                    const std::function<void(int finished, int total)>& progress) {
   PowerRuns power{std::move(setting), plan, {}};
   for (const int size : plan.participants) {
     for (const Hypothesis hypothesis : {Hypothesis::population, Hypothesis::null}) {
@@ -45,16 +44,17 @@ PowerRuns make_runs(const Rehearsal& study, const PrimaryTest& test, PowerSettin
           {size, hypothesis, std::vector<PowerRun>(static_cast<std::size_t>(plan.runs))});
     }
   }
-  // Progress counts participants, because the time is proportional to their number.
-  double people = 0.0;
-  for (const int size : plan.participants) people += 2.0 * plan.runs * size;
-  double done = 0.0;
+  // Progress counts simulated participants, because computing time is proportional to them.
+  double total = 0.0;
+  for (const int size : plan.participants) total += 2.0 * plan.runs * size;
+  double finished_people = 0.0;
   for (PowerCell& cell : power.cells) {
-    for (int first = 0; first < plan.runs; first += kBlock) {
-      make_block(study, test, plan, jobs, first, cell);
-      done += static_cast<double>(std::min(kBlock, plan.runs - first)) * cell.participants;
+    for (int first = 0; first < plan.runs; first += kRunsPerBlock) {
+      run_block(study, test, plan, jobs, first, cell);
+      finished_people +=
+          static_cast<double>(std::min(kRunsPerBlock, plan.runs - first)) * cell.participants;
       constexpr int kSteps = 1000;
-      if (progress) progress(static_cast<int>(kSteps * done / people), kSteps);
+      if (progress) progress(static_cast<int>(kSteps * finished_people / total), kSteps);
     }
   }
   return power;

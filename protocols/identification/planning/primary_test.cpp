@@ -29,7 +29,7 @@ PrimaryTest pair_test(const study::Study& study, const std::optional<MethodLabel
                      " methods; choose two for the primary test with --methods, of: " +
                      study.presented_labels());
   }
-  // The default test of two methods applies.
+  // For more methods, the default test of two methods applies.
   if (!test) test = choices::primary_question(study, 2);
   test->first = method_of(study, methods->first);
   test->second = method_of(study, methods->second);
@@ -45,7 +45,7 @@ bool is_difference(const PrimaryTest& test) {
   return test.estimand == study::Estimand::difference;
 }
 
-/// The maximum p within the level that these differences could have.
+/// The largest possible p within the level, given the sizes of these differences.
 double attainable_of(const PrimaryTest& test, const std::vector<double>& values) {
   if (test.test != study::RegisteredTest::sign_flip) return test.alpha;
   if (test.sides == analysis::Sides::two) {
@@ -65,7 +65,7 @@ PrimaryTest primary_test_of(const study::Study& study, const std::optional<Metho
   return *choices::primary_question(study, 1);
 }
 
-PrimaryTest with_margin(PrimaryTest test, double margin) {
+PrimaryTest as_noninferiority_test(PrimaryTest test, double margin) {
   if (!is_difference(test)) {
     throw UsageError(
         "--margin: needs two methods, but the study presents only one; remove the option");
@@ -84,11 +84,11 @@ PrimaryTest with_margin(PrimaryTest test, double margin) {
 
 std::string words_of(const PrimaryTest& test, const study::Study& study) {
   const std::string& first = study.methods[test.first].label;
-  std::string what = is_difference(test) ? "accuracy with " + first + " less that with " +
-                                               study.methods[test.second].label
-                                         : "mean accuracy with " + first + " against chance";
-  if (test.margin) what += fmt::format(" against {:.4g} points", -100.0 * *test.margin);
-  return fmt::format("{}: {}, level {}", what, choices::test_words(test), test.alpha);
+  std::string estimand = is_difference(test) ? "accuracy with " + first + " less that with " +
+                                                   study.methods[test.second].label
+                                             : "mean accuracy with " + first + " against chance";
+  if (test.margin) estimand += fmt::format(" against {:.4g} points", -100.0 * *test.margin);
+  return fmt::format("{}: {}, level {}", estimand, choices::test_words(test), test.alpha);
 }
 
 std::string estimate_words(const PrimaryTest& test) {
@@ -99,20 +99,20 @@ PowerRun analyse_run(const PrimaryTest& test, const analysis::Outcomes& outcomes
                      bool with_attainable) {
   const auto people = choices::primary_values(test, outcomes);
   const auto classes = static_cast<int>(outcomes.classes.size());
-  const choices::PrimaryEstimate found =
+  const choices::PrimaryEstimate estimate =
       choices::primary_estimate(test, people, analysis::kConfidenceLevel);
-  const analysis::Interval whole{is_difference(test) ? -1.0 : 0.0, 1.0};
-  const analysis::Interval interval = found.interval.value_or(whole);
+  const analysis::Interval full_range{is_difference(test) ? -1.0 : 0.0, 1.0};
+  const analysis::Interval interval = estimate.interval.value_or(full_range);
   double p = choices::primary_p(test, classes, people).value_or(1.0);
   if (test.margin) {
-    // Non-inferiority is shown only if both methods are above chance.
+    // Non-inferiority also requires that both methods are above chance.
     const choices::Selection counted{{}, {}, choices::counted_sessions(outcomes)};
     for (const analysis::AboveChance& one : choices::above_chance(test, outcomes, counted)) {
       p = std::max(p, one.p.value_or(1.0));
     }
   }
   return {p, with_attainable ? attainable_of(test, choices::differences_of(people)) : 0.0,
-          found.estimate.value_or(0.0), interval.low, interval.high};
+          estimate.estimate.value_or(0.0), interval.low, interval.high};
 }
 
 bool is_significant(const PowerRun& run, double level) noexcept {

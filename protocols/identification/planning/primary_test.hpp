@@ -1,5 +1,5 @@
-/// \file The primary test of a study, and its result in one simulated study.
-/// Source: docs/planning.md, "The primary test"; docs/statistics.md.
+/// \file The primary test of a study, and its result in one simulated study. Source:
+/// docs/planning.md, "The primary test"; docs/statistics.md.
 #pragma once
 
 #include "analysis/choices/primary.hpp"
@@ -16,25 +16,25 @@ namespace touchtrial::planning::identification {
 /// The labels of two methods in the study file.
 using MethodLabels = std::pair<std::string, std::string>;
 
-/// The primary test. Test, sides and level are those that the study registers, or the defaults of
-/// its protocol.
+/// The primary test. The study registers test, sides and level; otherwise the protocol's defaults
+/// apply.
 using PrimaryTest = choices::PrimaryQuestion;
 
 /// The primary test of the study's protocol.
-/// \param methods  of a comparison, first minus second; required if it has more than two
-/// \throws UsageError if they are not two of the study's methods, if they are missing, or if the
-///   study presents one method only
+/// \param methods  first minus second; required if the study presents more than two methods
+/// \throws UsageError if `methods` is missing, or is present although the study presents only one
+///   method, or does not name two of its methods
 [[nodiscard]] PrimaryTest primary_test_of(const study::Study& study,
                                           const std::optional<MethodLabels>& methods);
 
-/// Turns a test into a test of non-inferiority: whether the first method is as good as the second.
+/// Converts a test to a test of non-inferiority of the first method.
 /// \throws UsageError if the test does not compare two methods, or the margin is not in (0, 1]
-[[nodiscard]] PrimaryTest with_margin(PrimaryTest test, double margin);
+[[nodiscard]] PrimaryTest as_noninferiority_test(PrimaryTest test, double margin);
 
-/// \return for instance "mean accuracy with adaptive against chance: one-sample t test over
+/// \return for example "mean accuracy with adaptive against chance: one-sample t test over
 ///   participants, one-sided, level 0.05"
 [[nodiscard]] std::string words_of(const PrimaryTest& test, const study::Study& study);
-/// Name of PowerRun::estimate if two methods are compared.
+/// The name of PowerRun::estimate if two methods are compared.
 inline constexpr std::string_view kDifferenceWords = "difference of accuracies";
 /// \return the name of PowerRun::estimate: "accuracy" or kDifferenceWords
 [[nodiscard]] std::string estimate_words(const PrimaryTest& test);
@@ -42,7 +42,7 @@ inline constexpr std::string_view kDifferenceWords = "difference of accuracies";
 /// The result of one simulated study.
 struct PowerRun {
   double p = 1.0;
-  /// The maximum p of the sign flips within the level; for t tests, the level itself; 0 if not
+  /// The largest possible p of the sign flips within the level; for t tests, the level; 0 if not
   /// computed.
   double attainable = 0.0;
   double estimate = 0.0;  ///< mean over participants: accuracy, or difference of accuracies

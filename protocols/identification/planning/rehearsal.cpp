@@ -17,7 +17,7 @@ std::string_view name_of(Hypothesis hypothesis) {
   return hypothesis == Hypothesis::null ? "null" : "population";
 }
 
-analysis::Outcomes no_participants(const study::Study& study) {
+analysis::Outcomes empty_outcomes(const study::Study& study) {
   analysis::Outcomes outcomes;
   outcomes.study = study.name;
   outcomes.simulated = true;
@@ -54,7 +54,7 @@ analysis::TrialOutcome answered_trial(int number, int session, int visit,
   trial.row.trial = presented.place.trial;
   trial.row.block = presented.place.block;
   trial.row.state = record::TrialState::answered;
-  trial.row.answer = Chosen{position};
+  trial.row.answer = ChoiceAnswer{position};
   trial.stimulus = presented.field();
   trial.role = presented.role;
   trial.scored = true;
@@ -65,8 +65,8 @@ analysis::TrialOutcome answered_trial(int number, int session, int visit,
 }
 
 int another_position(int position, std::size_t pictures, RandomStream& random) {
-  const auto further = 1 + random.below(pictures - 1);
-  return static_cast<int>((static_cast<std::uint64_t>(position) + further) % pictures);
+  const auto step = 1 + random.below(pictures - 1);
+  return static_cast<int>((static_cast<std::uint64_t>(position) + step) % pictures);
 }
 
 }  // namespace touchtrial::planning::identification

@@ -1,5 +1,5 @@
-/// \file Fast simulation of a study: with its schedules, pictures and orders, but without sessions,
-/// database and traces; and the source of what participants feel. Source: docs/planning.md, "The
+/// \file Fast simulation of a study with its schedules, pictures and orders, but without sessions,
+/// database and traces; and the source of participants' perception. Source: docs/planning.md, "The
 /// fast path".
 #pragma once
 
@@ -26,43 +26,44 @@ struct FeltTrial {
   std::uint64_t study_seed = 0;  ///< as in `simulate --seed`
   int participant = 0;           ///< number, from 1
   std::uint64_t nth = 0;         ///< number of the participant's presentation, from 1
-  std::uint64_t draw = 0;        ///< random bits of the presentation
+  std::uint64_t draw = 0;        ///< random bits for the presentation
   double gain_db = 0.0;          ///< study::Plane::gain_db
 };
 
-/// The source of what participants learn and feel. Results depend only on the arguments.
+/// The source of participants' training and perception. Results depend only on the arguments.
 /// Thread-safe.
-class Feelings {
+class PerceptionSource {
  public:
-  virtual ~Feelings() = default;
-  Feelings() = default;
-  Feelings(const Feelings&) = delete;
-  Feelings& operator=(const Feelings&) = delete;
+  virtual ~PerceptionSource() = default;
+  PerceptionSource() = default;
+  PerceptionSource(const PerceptionSource&) = delete;
+  PerceptionSource& operator=(const PerceptionSource&) = delete;
 
-  /// The training of a study's participants: `simulation::learn`.
+  /// The result of training a study's participants with `simulation::learn`.
   [[nodiscard]] virtual std::shared_ptr<const simulation::FeltKnowledge> knowledge(
       std::uint64_t study_seed) const = 0;
-  /// The features of a stimulus in a presentation, without noise.
+  /// The felt features of a stimulus in a presentation, without noise.
   [[nodiscard]] virtual engine::FeltFeatures felt(const study::StimulusIndex& stimulus,
                                                   const FeltTrial& trial) const = 0;
 };
 
-struct BankedFeelingsOptions {
-  int explorations = 1000;  ///< of each stimulus, from which trials draw
-  int trainings = 16;       ///< from which studies draw
-  std::uint64_t seed = 1;   ///< of the paths
-  int jobs = 1;             ///< threads; results do not depend on it
+struct PrecomputedPerceptionOptions {
+  int explorations = 1000;  ///< precomputed explorations per stimulus
+  int trainings = 16;       ///< precomputed trainings
+  std::uint64_t seed = 1;   ///< of the exploration paths
+  int jobs = 1;             ///< number of threads; does not affect results
 };
 
-/// Precomputed explorations and trainings. Each trial draws one of the explorations, and each study
-/// one of the trainings. Holds no references to its arguments.
-class BankedFeelings final : public Feelings {
+/// Precomputed explorations and trainings. Each trial draws one exploration, and each study draws
+/// one training. Keeps no references to its arguments.
+class PrecomputedPerception final : public PerceptionSource {
  public:
-  /// \param study  of the fields
+  /// \param study  the study that the fields belong to
   /// \param progress  called from one thread at a time
-  BankedFeelings(const simulation::LabelledFields& fields, const study::Study& study,
-                 const simulation::SubjectModel& subject, const BankedFeelingsOptions& options,
-                 const study::Progress& progress = {});
+  PrecomputedPerception(const simulation::LabelledFields& fields, const study::Study& study,
+                        const simulation::SubjectModel& subject,
+                        const PrecomputedPerceptionOptions& options,
+                        const study::Progress& progress = {});
 
   [[nodiscard]] std::shared_ptr<const simulation::FeltKnowledge> knowledge(
       std::uint64_t study_seed) const override;
@@ -74,28 +75,30 @@ class BankedFeelings final : public Feelings {
   std::vector<std::shared_ptr<const simulation::FeltKnowledge>> trainings_;
 };
 
-/// Refuses a subject that explores until time is up if the study then rejects answers.
-/// \throws StudyError with the subject's file and the remedy
+/// Checks that the subject answers within the study's time limit.
+/// \throws StudyError, naming the subject's file and the remedy, if the subject explores until the
+///   limit and the study then rejects answers
 void require_answers(const study::Study& study, const simulation::SubjectModel& subject);
 
-/// Simulates outcomes of one study repeatedly. Study, subject and feelings must outlive it.
+/// Simulates outcomes of one study repeatedly. Study, subject and perception must outlive it.
 /// Thread-safe once constructed.
 class RehearsedStudy final : public Rehearsal {
  public:
-  /// \param max_participants  of any simulated study, >= 1; schedules are made for so many
-  /// \throws StudyError if the study does not permit its orders, or as require_answers
-  /// \throws UsageError if the margin exceeds the methods' accuracy
+  /// \param max_participants  maximum of any simulated study, >= 1; determines the number of
+  ///   schedules
+  /// \throws StudyError if the study's orders are impossible, or as require_answers does
+  /// \throws UsageError if the margin is not below the methods' accuracy
   RehearsedStudy(const study::Study& study, const simulation::SubjectModel& subject,
-                 const PrimaryTest& test, const Feelings& feelings, int max_participants);
+                 const PrimaryTest& test, const PerceptionSource& perception, int max_participants);
 
-  /// Outcomes of participants with the numbers and enrolment numbers 1 .. `participants`. Without a
-  /// margin, with `population` and features from the servo, the scored trials are exactly those of
-  /// `simulate --seed study_seed`. Times, evidence and unscored trials are omitted.
+  /// See Rehearsal. Without a margin, with `population` and features from the servo, the scored
+  /// trials equal the scored trials of `simulate --seed study_seed`. Times, evidence and unscored
+  /// trials are omitted.
   [[nodiscard]] analysis::Outcomes outcomes(int participants, Hypothesis hypothesis,
                                             std::uint64_t study_seed) const override;
 
  private:
-  /// The data of a visit that all simulated studies share.
+  /// A visit's data common to all simulated studies.
   struct PlannedSchedule {
     study::Schedule schedule;
     std::vector<std::string> pictures;  ///< labels, by position
@@ -111,10 +114,10 @@ class RehearsedStudy final : public Rehearsal {
   void add_participant(int number, const SharedInput& shared, analysis::Outcomes& outcomes) const;
   void add_visit(Person& person, int visit, const SharedInput& shared,
                  analysis::Outcomes& outcomes) const;
-  /// Replaces a right answer by a wrong one with probability `loss`.
-  /// \param right  class
-  [[nodiscard]] static int with_loss(int position, double loss, Person& person, int right,
-                                     const study::Schedule& schedule);
+  /// Replaces a right answer with a wrong one with probability `loss`.
+  /// \param right  the presented class
+  [[nodiscard]] static int position_after_loss(int position, double loss, Person& person, int right,
+                                               const study::Schedule& schedule);
   /// \param draw  random bits
   [[nodiscard]] study::StimulusIndex felt_stimulus(const study::StimulusIndex& presented,
                                                    Hypothesis hypothesis, std::uint64_t draw) const;
@@ -125,11 +128,11 @@ class RehearsedStudy final : public Rehearsal {
 
   const simulation::SubjectModel& subject_;
   PrimaryTest test_;
-  const Feelings& feelings_;
-  int visits_;                ///< of each participant
+  const PerceptionSource& perception_;
+  int visits_;                ///< per participant
   double margin_loss_ = 0.0;  ///< share of right answers lost with the first method under `null`
-  std::vector<PlannedSchedule> schedules_;       ///< of each participant in turn, by visit
-  std::vector<study::StimulusIndex> of_method_;  ///< every stimulus of the test's first method
+  std::vector<PlannedSchedule> schedules_;                  ///< by participant and visit
+  std::vector<study::StimulusIndex> first_method_stimuli_;  ///< stimuli of the test's first method
   analysis::Outcomes empty_;
 };
 

@@ -12,22 +12,22 @@ class IdentifyingPopulation final : public Population {
   explicit IdentifyingPopulation(const PopulationSetting& setting)
       : subject_(setting.subject),
         seed_(setting.seed),
-        learnt_(learn(LabelledFields(setting.key, setting.source), setting.key.study,
-                      setting.subject, setting.seed, setting.jobs)) {}
+        trained_knowledge_(learn(LabelledFields(setting.key, setting.source), setting.key.study,
+                                 setting.subject, setting.seed, setting.jobs)) {}
 
   std::unique_ptr<SimulatedParticipant> participant(int number) const override {
     return std::make_unique<IdentifyingParticipant>(
-        subject_, remembered(learnt_, subject_, seed_, number), seed_, number);
+        subject_, memory_of(trained_knowledge_, subject_, seed_, number), seed_, number);
   }
 
  private:
   const SubjectModel& subject_;
   std::uint64_t seed_;
-  std::shared_ptr<const FeltKnowledge> learnt_;
+  std::shared_ptr<const FeltKnowledge> trained_knowledge_;
 };
 
 /// A pointer without ownership.
-std::shared_ptr<const FeltKnowledge> borrowed(const FeltKnowledge& knowledge) {
+std::shared_ptr<const FeltKnowledge> unowned(const FeltKnowledge& knowledge) {
   return {std::shared_ptr<const FeltKnowledge>(), &knowledge};
 }
 
@@ -48,10 +48,10 @@ IdentifyingParticipant::IdentifyingParticipant(const SubjectModel& subject,
 IdentifyingParticipant::IdentifyingParticipant(const SubjectModel& subject,
                                                const FeltKnowledge& knowledge, std::uint64_t seed,
                                                int number)
-    : IdentifyingParticipant(subject, borrowed(knowledge), seed, number) {}
+    : IdentifyingParticipant(subject, unowned(knowledge), seed, number) {}
 
 void IdentifyingParticipant::see_pictures(const std::vector<std::string>& labels) {
-  pictures_ = see(labels, subject_, individual_, *knowledge_);
+  pictures_ = match_pictures(labels, subject_, individual_, *knowledge_);
 }
 
 void IdentifyingParticipant::begin_visit(int visit, TrialCourse course) {
@@ -60,15 +60,16 @@ void IdentifyingParticipant::begin_visit(int visit, TrialCourse course) {
 }
 
 void IdentifyingParticipant::rest() {
-  condition_.rest(begun());
+  condition_.rest(presentations_begun());
 }
 
 ParticipantAnswer IdentifyingParticipant::choose(const engine::FeltFeatures& felt,
                                                  RandomStream& random) {
-  const auto nth = static_cast<std::size_t>(begun());
-  const TrialPlace place = nth >= 1 && nth <= course_.size() ? course_[nth - 1] : TrialPlace{};
-  const ParticipantAnswer answer =
-      decision_.answer(felt, pictures_, random, condition_.before(begun(), place.block));
+  const auto trial = static_cast<std::size_t>(presentations_begun());
+  const TrialPlace place =
+      trial >= 1 && trial <= course_.size() ? course_[trial - 1] : TrialPlace{};
+  const ParticipantAnswer answer = decision_.answer(
+      felt, pictures_, random, condition_.effects_on(presentations_begun(), place.block));
   end_trial(condition_, place, answer.position, pictures_, *knowledge_);
   return answer;
 }

@@ -1,5 +1,5 @@
-/// \file A simulated participant who has learnt how the classes feel, and identifies the presented
-/// one.
+/// \file A simulated participant who has learnt how the classes feel and identifies the presented
+/// class.
 #pragma once
 
 #include "protocols/simulation/condition.hpp"
@@ -15,15 +15,16 @@
 
 namespace touchtrial::simulation::identification {
 
-/// Perceives the felt intensities with noise and chooses the picture whose class makes them most
-/// likely, with bias and condition; in a lapse, chooses any picture. The subject must outlive it.
+/// Perceives the felt intensities with noise and chooses the picture of the most likely class,
+/// subject to bias and condition; in a lapse, chooses a random picture. The subject must outlive
+/// it.
 class IdentifyingParticipant final : public SimulatedParticipant {
  public:
   /// \param number  from 1
   IdentifyingParticipant(const SubjectModel& subject,
                          std::shared_ptr<const FeltKnowledge> knowledge, std::uint64_t seed,
                          int number);
-  /// \param knowledge  must outlive this
+  /// \param knowledge  must outlive the participant
   IdentifyingParticipant(const SubjectModel& subject, const FeltKnowledge& knowledge,
                          std::uint64_t seed, int number);
 
@@ -46,11 +47,11 @@ class IdentifyingParticipant final : public SimulatedParticipant {
   FeltDecision decision_;
   Condition condition_;
   TrialCourse course_;
-  SeenPictures pictures_;
+  MatchedPictures pictures_;
 };
 
-/// Trains participants on the study's labelled fields as the subject model specifies: all with the
-/// same training passes, or each with different ones.
+/// Trains participants on the study's labelled fields, all with the same or each with different
+/// training passes, as the subject model specifies.
 /// \throws StudyError if the subject names a class that the study does not have
 /// \throws FileError if the pack lacks a stimulus
 [[nodiscard]] std::unique_ptr<const Population> make_population(const PopulationSetting& setting);

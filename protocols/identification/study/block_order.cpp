@@ -22,7 +22,7 @@ bool mixes_methods(const Study& study) {
 }
 
 /// Whether the limit on runs excludes any order.
-bool max_run_matters(const Study& study) {
+bool limits_runs(const Study& study) {
   const TrialOptions& trials = study.trials;
   if (trials.max_run == 0) return false;
   const int copies = trials.order == TrialOrder::uniform
@@ -77,7 +77,7 @@ std::optional<OrderObstacle> obstacle_to_williams(const Study& study) {
 }
 
 std::optional<OrderObstacle> obstacle_to_limit(const Study& study) {
-  if (study.trials.order != TrialOrder::shuffled || !max_run_matters(study)) return std::nullopt;
+  if (study.trials.order != TrialOrder::shuffled || !limits_runs(study)) return std::nullopt;
   const std::vector<int> counts(study.classes.size(), copies_in_block(study));
   const std::string limit = "is " + std::to_string(study.trials.max_run);
   if (!limited_order_exists(counts, study.trials.max_run)) {
@@ -93,7 +93,7 @@ std::optional<OrderObstacle> obstacle_to_limit(const Study& study) {
   return std::nullopt;
 }
 
-/// A block to draw, with its random streams.
+/// The inputs for drawing a block, with its random streams.
 struct BlockDraw {
   const Study& study;
   std::vector<BlockItem> items;  ///< every pair of class and method once, method by method
@@ -102,7 +102,9 @@ struct BlockDraw {
 
   [[nodiscard]] int classes() const { return static_cast<int>(study.classes.size()); }
   [[nodiscard]] int methods() const { return static_cast<int>(items.size()) / classes(); }
-  [[nodiscard]] int scored() const { return static_cast<int>(items.size()) * study.trials.repeats; }
+  [[nodiscard]] int scored_count() const {
+    return static_cast<int>(items.size()) * study.trials.repeats;
+  }
   [[nodiscard]] const BlockItem& item(int class_index, int method) const {
     return items[static_cast<std::size_t>(method * classes() + class_index)];
   }
@@ -116,12 +118,11 @@ std::vector<BlockItem> items_of(const Study& study, std::span<const int> methods
   return items;
 }
 
-BlockItem drawn(std::span<const BlockItem> items, RandomStream& random) {
+BlockItem random_item(std::span<const BlockItem> items, RandomStream& random) {
   return items[static_cast<std::size_t>(random.below(items.size()))];
 }
 
-/// A de Bruijn cycle with its last symbol repeated in front as a lead-in, so that every transition
-/// occurs.
+/// A de Bruijn cycle preceded by its last symbol as a lead-in, so that every transition occurs.
 BlockOrder de_bruijn_order(BlockDraw& draw) {
   const std::vector<int> cycle =
       random_de_bruijn_cycle(static_cast<int>(draw.items.size()), draw.order);
@@ -132,22 +133,22 @@ BlockOrder de_bruijn_order(BlockDraw& draw) {
   return order;
 }
 
-/// An order without a limit on runs: independent draws for the order `uniform`, or every item
-/// equally often in a shuffled order.
-std::vector<BlockItem> free_order(BlockDraw& draw) {
-  const bool balanced = draw.study.trials.order == TrialOrder::shuffled;
+/// An order without a limit on runs: independent draws for the order `uniform`, otherwise every
+/// item equally often in a shuffled order.
+std::vector<BlockItem> unlimited_order(BlockDraw& draw) {
+  const bool is_balanced = draw.study.trials.order == TrialOrder::shuffled;
   std::vector<BlockItem> scored;
-  for (int i = 0; i < draw.scored(); ++i) {
+  for (int i = 0; i < draw.scored_count(); ++i) {
     const auto next = static_cast<std::size_t>(i) % draw.items.size();
-    scored.push_back(balanced ? draw.items[next] : drawn(draw.items, draw.order));
+    scored.push_back(is_balanced ? draw.items[next] : random_item(draw.items, draw.order));
   }
-  if (balanced) shuffle(std::span<BlockItem>(scored), draw.order);
+  if (is_balanced) shuffle(std::span<BlockItem>(scored), draw.order);
   return scored;
 }
 
-/// Gives each presentation a method, drawn independently.
-std::vector<BlockItem> with_any_methods(const std::vector<int>& classes, const BlockDraw& draw,
-                                        RandomStream& random) {
+/// Assigns an independently drawn method to each presentation.
+std::vector<BlockItem> assign_random_methods(const std::vector<int>& classes, const BlockDraw& draw,
+                                             RandomStream& random) {
   std::vector<BlockItem> items;
   for (const int class_index : classes) {
     const auto method = random.below(static_cast<std::uint64_t>(draw.methods()));
@@ -156,9 +157,9 @@ std::vector<BlockItem> with_any_methods(const std::vector<int>& classes, const B
   return items;
 }
 
-/// Gives each class every method equally often, in a shuffled order. The number of orders of
-/// methods is the same for every order of classes, so all combinations are equally likely.
-std::vector<BlockItem> with_balanced_methods(const std::vector<int>& classes, BlockDraw& draw) {
+/// Assigns every method equally often to each class, in shuffled order. Every order of classes has
+/// the same number of method orders, so all combinations are equally likely.
+std::vector<BlockItem> assign_balanced_methods(const std::vector<int>& classes, BlockDraw& draw) {
   std::vector<std::vector<int>> decks(static_cast<std::size_t>(draw.classes()));
   for (std::vector<int>& deck : decks) {
     for (int i = 0; i < draw.study.trials.repeats * draw.methods(); ++i) {
@@ -175,55 +176,55 @@ std::vector<BlockItem> with_balanced_methods(const std::vector<int>& classes, Bl
   return items;
 }
 
-std::vector<BlockItem> limited_order(BlockDraw& draw, RunBefore before) {
+std::vector<BlockItem> limited_order(BlockDraw& draw, PrecedingRun previous_run) {
   const int max_run = draw.study.trials.max_run;
   if (draw.study.trials.order == TrialOrder::uniform) {
-    const std::vector<int> classes =
-        draw_limited_sequence(draw.classes(), draw.scored(), max_run, before, draw.order);
-    return with_any_methods(classes, draw, draw.order);
+    const std::vector<int> classes = draw_limited_sequence(draw.classes(), draw.scored_count(),
+                                                           max_run, previous_run, draw.order);
+    return assign_random_methods(classes, draw, draw.order);
   }
   const std::vector<int> counts(static_cast<std::size_t>(draw.classes()),
                                 draw.study.trials.repeats * draw.methods());
-  const auto classes = draw_limited_order(counts, max_run, before, draw.order);
+  const auto classes = draw_limited_order(counts, max_run, previous_run, draw.order);
   if (!classes) {
     throw StudyError(one_line("study " + draw.study.name + ": /trials/max_run: is " +
                               std::to_string(max_run) + ", which no order satisfies; raise it"));
   }
-  return with_balanced_methods(*classes, draw);
+  return assign_balanced_methods(*classes, draw);
 }
 
-std::vector<BlockItem> williams_order(BlockDraw& draw, RunBefore before) {
+std::vector<BlockItem> williams_order(BlockDraw& draw, PrecedingRun previous_run) {
   const TrialOptions& trials = draw.study.trials;
   std::vector<BlockItem> items;
-  for (const int class_index :
-       random_williams_order(draw.classes(), trials.repeats, trials.max_run, before, draw.order)) {
+  for (const int class_index : random_williams_order(draw.classes(), trials.repeats, trials.max_run,
+                                                     previous_run, draw.order)) {
     items.push_back(draw.item(class_index, 0));
   }
   return items;
 }
 
-/// Draws the lead-in presentations, before the scored ones, which continue their last run.
-std::vector<BlockItem> lead_ins(BlockDraw& draw) {
+/// Draws the lead-in presentations before the scored presentations, which continue the last run.
+std::vector<BlockItem> draw_lead_ins(BlockDraw& draw) {
   const TrialOptions& trials = draw.study.trials;
   if (trials.max_run > 0) {
     const std::vector<int> classes =
         draw_limited_sequence(draw.classes(), trials.lead_in, trials.max_run, {}, draw.lead_in);
-    return with_any_methods(classes, draw, draw.lead_in);
+    return assign_random_methods(classes, draw, draw.lead_in);
   }
   std::vector<BlockItem> items;
-  for (int i = 0; i < trials.lead_in; ++i) items.push_back(drawn(draw.items, draw.lead_in));
+  for (int i = 0; i < trials.lead_in; ++i) items.push_back(random_item(draw.items, draw.lead_in));
   return items;
 }
 
-RunBefore run_after(const std::vector<BlockItem>& items) {
+PrecedingRun run_after(const std::vector<BlockItem>& items) {
   std::vector<int> classes;
   for (const BlockItem& item : items) classes.push_back(item.class_index);
   return run_at_end(classes, {});
 }
 
-std::vector<BlockItem> scored_items(BlockDraw& draw, RunBefore before) {
-  if (draw.study.trials.order == TrialOrder::williams) return williams_order(draw, before);
-  return max_run_matters(draw.study) ? limited_order(draw, before) : free_order(draw);
+std::vector<BlockItem> scored_items(BlockDraw& draw, PrecedingRun previous_run) {
+  if (draw.study.trials.order == TrialOrder::williams) return williams_order(draw, previous_run);
+  return limits_runs(draw.study) ? limited_order(draw, previous_run) : unlimited_order(draw);
 }
 
 }  // namespace
@@ -241,7 +242,7 @@ BlockOrder make_block_order(const Study& study, std::span<const int> methods,
                  RandomStream(secret, "schedule: lead-in, " + purpose)};
   if (study.trials.order == TrialOrder::de_bruijn) return de_bruijn_order(draw);
   BlockOrder order;
-  order.items = lead_ins(draw);
+  order.items = draw_lead_ins(draw);
   order.lead_ins = order.items.size();
   const std::vector<BlockItem> scored = scored_items(draw, run_after(order.items));
   order.items.insert(order.items.end(), scored.begin(), scored.end());

@@ -1,5 +1,5 @@
-/// \file The presentations of a block and their order, before images are chosen, and a check whether
-/// the study permits its order. Private to protocols/identification.
+/// \file The order of a block's presentations before images are chosen, and a check whether the
+/// study's order is possible. Private to protocols/identification.
 #pragma once
 
 #include "core/cipher.hpp"
@@ -15,11 +15,11 @@ namespace touchtrial::study::identification {
 
 /// Why an order is impossible.
 struct OrderObstacle {
-  std::string key;  ///< the offending key of "trials", as a JSON pointer: "/repeats"
-  std::string what;
+  std::string key;   ///< the offending key of "trials", as a JSON pointer: "/repeats"
+  std::string what;  ///< fault and remedy, printed after the key
 };
 
-/// \return why the study's order is impossible; empty if every participant can get a schedule
+/// \return why the study's order is impossible; empty if it is possible for every participant
 [[nodiscard]] std::optional<OrderObstacle> obstacle_to_order(const Study& study);
 
 /// The class and method of a trial, before an image is chosen.
@@ -36,9 +36,8 @@ struct BlockOrder {
 
 /// Draws the order of a block.
 /// \param methods  methods that the block presents
-/// \param purpose  suffix of the names of the block's random streams, after "schedule: order, " and
-///   "schedule: lead-in, "
-/// \param secret  of the participant, see ScheduleDraw
+/// \param purpose  suffix of the names of the block's random streams
+/// \param secret  the participant's secret, see ScheduleDraw
 /// \pre obstacle_to_order(study) is empty
 [[nodiscard]] BlockOrder make_block_order(const Study& study, std::span<const int> methods,
                                           const std::string& purpose, const SecretKey& secret);

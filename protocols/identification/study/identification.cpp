@@ -7,7 +7,7 @@
 namespace touchtrial::study::identification {
 namespace {
 
-/// The task of both protocols, which differ only in the methods that they present.
+/// The task of both protocols, which differ only in their methods.
 class Identification final : public Task {
  public:
   explicit Identification(int min_methods) : min_methods_(min_methods) {}
@@ -27,8 +27,8 @@ class Identification final : public Task {
            study.trials.repeats;
   }
   std::string rule(const Study& study) const override { return rule_of_schedule(study); }
-  Ask ask(const Study& study, const Place& /*place*/) const override {
-    Choose question;
+  TrialQuestion ask(const Study& study, const Place& /*place*/) const override {
+    ChoiceQuestion question;
     for (const StudyClass& one : study.classes) {
       question.choices.push_back({one.label, static_cast<int>(question.choices.size())});
     }
@@ -43,7 +43,7 @@ class Identification final : public Task {
 };
 
 template <int min_methods>
-std::shared_ptr<const Task> made(const std::optional<JsonValue>& /*section*/) {
+std::shared_ptr<const Task> make_task(const std::optional<JsonValue>& /*section*/) {
   return std::make_shared<Identification>(min_methods);
 }
 
@@ -54,7 +54,7 @@ constexpr Estimand kEstimands[] = {Estimand::mean_accuracy, Estimand::difference
 const Protocol& classification() {
   static constexpr Protocol kProtocol{.name = "classification",
                                       .section = {},
-                                      .read = made<1>,
+                                      .read = make_task<1>,
                                       .all_methods = false,
                                       .estimands = kEstimands};
   return kProtocol;
@@ -63,7 +63,7 @@ const Protocol& classification() {
 const Protocol& comparison() {
   static constexpr Protocol kProtocol{.name = "comparison",
                                       .section = {},
-                                      .read = made<2>,
+                                      .read = make_task<2>,
                                       .min_methods = 2,
                                       .estimands = kEstimands};
   return kProtocol;

@@ -1,5 +1,5 @@
-/// \file Identification: a participant feels a texture and says which of the study's classes it is.
-/// Source: the paper's two experiments (docs/method.md).
+/// \file Identification: a participant feels a texture and names its class. Source: the paper's two
+/// experiments (docs/method.md).
 #pragma once
 
 #include "study/protocol.hpp"
@@ -8,7 +8,7 @@ namespace touchtrial::study::identification {
 
 /// The protocol that presents only the study's first method.
 [[nodiscard]] const Protocol& classification();
-/// The protocol that presents all methods of the study, at least two, to each participant.
+/// The protocol that presents all of the study's methods, at least two, to each participant.
 [[nodiscard]] const Protocol& comparison();
 
 }  // namespace touchtrial::study::identification

@@ -10,11 +10,11 @@
 
 namespace touchtrial::study::identification {
 
-/// The order of one participant.
-/// \throws StudyError if the study does not permit it
+/// Draws one participant's order.
+/// \throws StudyError if the study's order is impossible
 [[nodiscard]] std::unique_ptr<Order> identifying_order(const Study& study,
                                                        const ScheduleDraw& draw);
-/// The name and version of the rule that draws it.
+/// The name, version and parameters of the rule that draws orders.
 [[nodiscard]] std::string rule_of_schedule(const Study& study);
 
 }  // namespace touchtrial::study::identification

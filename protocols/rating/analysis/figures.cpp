@@ -14,28 +14,29 @@
 namespace touchtrial::analysis::rating {
 namespace {
 
-/// The room of a texture's methods along the axis.
-constexpr double kTextureRoom = 0.8;
-/// More means than these need the page's whole width.
-constexpr std::size_t kMeansOfColumn = 8;
+/// The width of a texture's methods along the axis.
+constexpr double kTextureWidth = 0.8;
+/// More means need the page's whole width.
+constexpr std::size_t kMaxMeansInColumn = 8;
 constexpr double kMaxPicture_cm = 1.5;
-constexpr double kPictureOfSlot = 0.86;
+constexpr double kPictureShare = 0.86;  ///< of an item's slot
 
 void add_rows(const RatingReport& report, const ScaleReport& scale, std::size_t method, Layer& dots,
               Layer& means) {
-  constexpr double kNear = 0.012;  ///< of the scale
-  const double room = kTextureRoom / static_cast<double>(report.methods.size());
-  const double near = kNear * (scale.scale.max() - scale.scale.min());
+  constexpr double kOverlap = 0.012;  ///< share of the scale
+  const double width = kTextureWidth / static_cast<double>(report.methods.size());
+  const double overlap = kOverlap * (scale.scale.max() - scale.scale.min());
   for (std::size_t i = 0; i < scale.means.items.size(); ++i) {
-    const ItemMean& one = scale.means.items[i];
-    if (static_cast<std::size_t>(one.item.method) != method || !one.mean.mean) continue;
-    const double x = one.item.texture_class + 1.0 - 0.5 * kTextureRoom +
-                     room * (static_cast<double>(method) + 0.5);
-    std::vector<OwnValue> own;
-    for (const double value : scale.own_means[i]) own.push_back({value});
-    swarm(dots.rows, x - 0.1 * room, 0.6 * room, near, std::move(own));
-    means.rows.push_back(bar(x + 0.3 * room, *one.mean.mean, one.mean.known_interval()));
-    means.rows.back().text = report.classes[static_cast<std::size_t>(one.item.texture_class)];
+    const ItemMean& item_mean = scale.means.items[i];
+    if (static_cast<std::size_t>(item_mean.item.method) != method || !item_mean.mean.mean) continue;
+    const double x = item_mean.item.texture_class + 1.0 - 0.5 * kTextureWidth +
+                     width * (static_cast<double>(method) + 0.5);
+    std::vector<ParticipantValue> values;
+    for (const double value : scale.participant_means[i]) values.push_back({value});
+    swarm(dots.rows, x - 0.1 * width, 0.6 * width, overlap, std::move(values));
+    means.rows.push_back(
+        bar(x + 0.3 * width, *item_mean.mean.mean, item_mean.mean.known_interval()));
+    means.rows.back().text = report.classes[static_cast<std::size_t>(item_mean.item.texture_class)];
   }
 }
 
@@ -46,12 +47,13 @@ std::string mean_with_interval(const MeanEstimate& mean) {
 }
 
 std::string alt_of(const RatingReport& report, const ScaleReport& scale) {
-  std::string alt = "Mean rating by texture and method with 95% intervals, and participants.";
-  for (const ItemMean& one : scale.means.items) {
-    if (!one.mean.mean) continue;
+  std::string alt =
+      "Mean rating by texture and method with 95% intervals, and participants' means.";
+  for (const ItemMean& item : scale.means.items) {
+    if (!item.mean.mean) continue;
     alt += fmt::format(
-        " {}, {}: {}.", report.classes[static_cast<std::size_t>(one.item.texture_class)],
-        report.methods[static_cast<std::size_t>(one.item.method)], mean_with_interval(one.mean));
+        " {}, {}: {}.", report.classes[static_cast<std::size_t>(item.item.texture_class)],
+        report.methods[static_cast<std::size_t>(item.item.method)], mean_with_interval(item.mean));
   }
   return alt;
 }
@@ -66,10 +68,10 @@ Axis rating_axis(const study::Scale& scale) {
           .first = scale.min()};
 }
 
-/// The items' pictures, each below its name.
-/// \param slot_cm  the room of an item along the axis
+/// Pictures below the names of items.
+/// \param slot_cm  the width of an item along the axis
 Panel pictures_panel(const ItemPictures& pictures, double slot_cm) {
-  const double side_cm = std::min(kMaxPicture_cm, kPictureOfSlot * slot_cm);
+  const double side_cm = std::min(kMaxPicture_cm, kPictureShare * slot_cm);
   Panel panel;
   panel.height_cm = side_cm;
   panel.x = {.low = 0.5, .high = static_cast<double>(pictures.size()) + 0.5, .hidden = true};
@@ -94,8 +96,8 @@ Panel pictures_panel(const ItemPictures& pictures, double slot_cm) {
 std::optional<Figure> ratings_figure(const RatingReport& report, const ScaleReport& scale,
                                      const ItemPictures& pictures) {
   const std::size_t count = report.classes.size() * report.methods.size();
-  Figure figure = figure_named(id_of(report, scale, "ratings-by-item"), "result", report.simulated,
-                               count > kMeansOfColumn ? kPage_cm : kColumn_cm);
+  Figure figure = empty_figure(id_of(report, scale, "ratings-by-item"), "result", report.simulated,
+                               count > kMaxMeansInColumn ? kPage_cm : kColumn_cm);
   Panel panel;
   panel.x = names_axis(report.classes);
   panel.y = rating_axis(scale.scale);
@@ -111,18 +113,19 @@ std::optional<Figure> ratings_figure(const RatingReport& report, const ScaleRepo
                .in_key = report.methods.size() > 1};
     add_rows(report, scale, i, dots, mean);
     if (mean.rows.empty()) continue;
+    emphasise_few(dots);
     panel.layers.push_back(std::move(dots));
     means.push_back(std::move(mean));
   }
   if (means.empty()) return {};
   std::ranges::move(means, std::back_inserter(panel.layers));
   figure.panels = {std::move(panel)};
-  const bool shows =
+  const bool has_pictures =
       std::ranges::any_of(pictures, [](const GreyImage& grey) { return !grey.empty(); });
-  if (shows) {
-    const PlacedPanel placed = layout_of(figure).panels.front();
+  if (has_pictures) {
+    const PlacedPanel placed_panel = layout_of(figure).panels.front();
     figure.panels.push_back(pictures_panel(
-        pictures, (placed.right_cm - placed.left_cm) /
+        pictures, (placed_panel.right_cm - placed_panel.left_cm) /
                       static_cast<double>(std::max<std::size_t>(pictures.size(), 1))));
   }
   figure.alt = alt_of(report, scale);
@@ -131,7 +134,7 @@ std::optional<Figure> ratings_figure(const RatingReport& report, const ScaleRepo
       caption_of(report, scale,
                  "ratings by texture and method: participants' means as dots, the mean over "
                  "participants and its 95% t interval") +
-          (shows ? "; below, the items' pictures." : "."));
+          (has_pictures ? "; below, the items' pictures." : "."));
   return figure;
 }
 

@@ -1,4 +1,4 @@
-/// \file The figures of a rating study's report.
+/// \file Figures of rating reports.
 #pragma once
 
 #include "analysis/report/figures/figure.hpp"
@@ -10,20 +10,19 @@
 
 namespace touchtrial::analysis::rating {
 
-/// Of each class, at most kPictureSide_px long; empty where there is none.
+/// The pictures of the classes, with sides of up to kPictureSide_px; empty for a class without a
+/// picture.
 using ItemPictures = std::vector<GreyImage>;
 inline constexpr int kPictureSide_px = 110;
 
-/// The figures that have something to show, in the order of a results section. No figure is drawn
-/// yet.
+/// All figures with data, in the order of a results section, not yet drawn.
 /// \param pictures  may be empty
-/// \param stamp  on every figure besides SIMULATED; may be empty
+/// \param stamp  on every figure in addition to SIMULATED; may be empty
 [[nodiscard]] std::vector<Figure> report_figures(const RatingReport& report,
                                                  const ItemPictures& pictures,
                                                  const std::string& stamp);
 
-/// Ratings by texture and method: participants' means, their mean and its interval, above the
-/// textures' pictures.
+/// Ratings by texture and method: participants' means, their mean and interval, above the pictures.
 /// \return nothing without a rating
 [[nodiscard]] std::optional<Figure> ratings_figure(const RatingReport& report,
                                                    const ScaleReport& scale,

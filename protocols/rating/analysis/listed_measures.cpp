@@ -1,4 +1,4 @@
-// What the members of results.json that measures make mean.
+// Meanings of the members of results.json.
 #include "protocols/rating/analysis/measures.hpp"
 
 namespace touchtrial::analysis::rating {
@@ -6,6 +6,11 @@ namespace touchtrial::analysis::rating {
 std::vector<ListedObject> listed_objects() {
   const RatingReport report;
   const ScaleReport scale;
+  const ListedMembers mean_of_items{{"items", "items that the mean is over"},
+                                    {"participants", "who rated all of them"},
+                                    {"mean", "of participants' means over the items"},
+                                    {"interval", "Student's t, 95 %, cut to the scale"},
+                                    {"sd", "between participants"}};
   return {
       listed_object("scales[].items[]", item_measures(report),
                     {{"class", "label of the texture"},
@@ -15,23 +20,13 @@ std::vector<ListedObject> listed_objects() {
                      {"interval", "Student's t, 95 %, cut to the scale"},
                      {"sd", "between participants"}}),
       listed_object("scales[].methods[]", group_measures("method", report.methods),
-                    {{"method", "label"},
-                     {"items", "items that the mean is over"},
-                     {"participants", "who rated all of them"},
-                     {"mean", "of participants' means over the items"},
-                     {"interval", "Student's t, 95 %, cut to the scale"},
-                     {"sd", "between participants"}}),
+                    joined_members({{{"method", "label"}}, mean_of_items})),
       listed_object("scales[].classes[]", group_measures("class", report.classes),
-                    {{"class", "label"},
-                     {"items", "items that the mean is over"},
-                     {"participants", "who rated all of them"},
-                     {"mean", "of participants' means over the items"},
-                     {"interval", "Student's t, 95 %, cut to the scale"},
-                     {"sd", "between participants"}}),
+                    joined_members({{{"class", "label"}}, mean_of_items})),
       listed_object(
           "scales[].differences[]", difference_measures(report),
           {{"first", "method"},
-           {"second", "method; differences are first less second"},
+           {"second", "method; differences are first minus second"},
            {"classes", "textures that both methods have"},
            {"participants", "who rated all of these by both"},
            {"difference", "mean of participants' differences"},

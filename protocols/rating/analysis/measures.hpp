@@ -1,4 +1,4 @@
-/// \file The numbers of a rating study, for its page and its results.json.
+/// \file The measures of a rating study, for its page and results.json.
 #pragma once
 
 #include "analysis/report/listed_measures.hpp"
@@ -10,17 +10,16 @@
 
 namespace touchtrial::analysis::rating {
 
-/// Decimals of ratings in tables and sentences.
 inline constexpr int kRatingDecimals = 2;
 inline constexpr int kCorrelationDecimals = 2;
 
-/// \name Lists that refer to a report, which must outlive them.
+/// \name Lists that refer to their arguments, which must outlive them
 /// \{
 
 [[nodiscard]] MeasureList<ItemMean> item_measures(const RatingReport& report);
 [[nodiscard]] MeasureList<MethodDifference> difference_measures(const RatingReport& report);
 [[nodiscard]] MeasureList<CatchRating> catch_measures(const RatingReport& report);
-/// Of each participant, by the index into RatingReport::people.
+/// Rows are indices into RatingReport::people.
 [[nodiscard]] MeasureList<std::size_t> use_measures(const RatingReport& report,
                                                     const ScaleReport& scale);
 
@@ -31,13 +30,13 @@ inline constexpr int kCorrelationDecimals = 2;
 [[nodiscard]] MeasureList<GroupMean> group_measures(const std::string& member,
                                                     const std::vector<std::string>& labels);
 
-/// What these lists make in results.json.
+/// The objects of these lists in results.json.
 [[nodiscard]] std::vector<ListedObject> listed_objects();
 
-/// Student's t of a difference; nothing if all differences are the same.
+/// Student's t of a difference; nothing if all differences are equal.
 [[nodiscard]] std::optional<TStatistic> statistic_of(const MethodDifference& difference);
 
-/// The indices of the participants.
-[[nodiscard]] std::vector<std::size_t> people_of(const RatingReport& report);
+/// Indices into RatingReport::people.
+[[nodiscard]] std::vector<std::size_t> people_indices(const RatingReport& report);
 
 }  // namespace touchtrial::analysis::rating

@@ -21,21 +21,22 @@ std::string scale_words(const study::Scale& scale) {
 std::string trial_sentence(const study::Study& study) {
   const std::vector<study::Scale> scales = study::rating::scales_of(study);
   return fmt::format(
-      "In each trial one plane was felt; the picture of a texture came up afterwards with {}: {}.",
+      "In each trial one plane was felt; then the picture of a texture was shown with {}: {}.",
       scales.size() == 1 ? "a scale" : fmt::format("{} scales", scales.size()),
       listed(scales, " and ", scale_words));
 }
 
 std::string order_sentence(const study::Study& study) {
   const int methods = study.presented_methods();
-  const bool mixed = study.trials.blocks == study::Blocks::mixed;
-  const std::string by = methods > 1 ? fmt::format(" by each of {} methods", methods) : "";
+  const bool is_mixed = study.trials.blocks == study::Blocks::mixed;
+  const std::string method_words =
+      methods > 1 ? fmt::format(" by each of {} methods", methods) : "";
   std::string text = fmt::format(
-      "Each of {} textures came {} times{} under its own picture, which made {} trials in random "
-      "order, with all once before any was repeated.",
-      study.classes.size(), study.trials.repeats, by, study.scored_trials());
-  if (methods > 1 && !mixed) {
-    text += " Each method had a block of its own, in orders by a Williams design.";
+      "Each of {} textures was presented {} times{} with its own picture, in {} trials in random "
+      "order, each once before any was repeated.",
+      study.classes.size(), study.trials.repeats, method_words, study.scored_trials());
+  if (methods > 1 && !is_mixed) {
+    text += " Each method had a separate block, in orders by a Williams design.";
   }
   return text;
 }
@@ -43,15 +44,15 @@ std::string order_sentence(const study::Study& study) {
 std::string anchors_sentence(const study::Study& study) {
   if (!study::rating::options_of(study).anchors || study.trials.practice == 0) return {};
   return "Practice began with the ends of the scale: a plane without texture, which fits no "
-         "picture, then textures under their own pictures.";
+         "picture, then textures with their own pictures.";
 }
 
 std::string catches_sentence(const study::Study& study) {
   const int catches = study.trials.catch_trials;
   if (catches == 0) return {};
   return fmt::format(
-      "In {} at random places a plane without texture was felt under the picture of a random "
-      "texture; means and differences leave these trials out.",
+      "In {} at random places a plane without texture was felt with the picture of a random "
+      "texture; means and differences exclude these trials.",
       counted(catches, "catch trial"));
 }
 
@@ -64,11 +65,13 @@ ProtocolMethods protocol_methods(const RatingReport& report, const Outcomes& out
   methods.sequence = {
       {order_sentence(study)}, {catches_sentence(study)}, {anchors_sentence(study)}};
   methods.statistics = {
-      {"The unit of analysis was the participant: repeats of a texture by a method were averaged "
-       "first, and means over participants have Student's t intervals of 95 %.",
+      {"The unit of analysis was the participant: repeats of a texture with a method were averaged "
+       "first, and means over participants have 95% Student's t intervals.",
        {Source::student}}};
-  const auto any = [&](auto has) { return std::ranges::any_of(report.scales, has); };
-  if (any([](const ScaleReport& one) { return !one.differences.empty(); })) {
+  const auto any_scale = [&](auto condition) {
+    return std::ranges::any_of(report.scales, condition);
+  };
+  if (any_scale([](const ScaleReport& scale) { return !scale.differences.empty(); })) {
     const bool are_exact = report.people.size() <= kExactSignFlips;
     methods.statistics.push_back(
         {fmt::format("Two methods were compared by participants' differences, with {}, two-sided, "
@@ -76,12 +79,12 @@ ProtocolMethods protocol_methods(const RatingReport& report, const Outcomes& out
                      are_exact ? "exact sign flips" : "sign flips drawn at random"),
          {Source::holm}});
     methods.statistics.push_back(
-        {"Sizes of differences are d_z, with noncentral t and jackknife intervals.",
+        {"Effect sizes are d_z, with noncentral t and jackknife intervals.",
          {Source::miller_jackknife}});
   }
-  if (any([](const ScaleReport& one) { return one.agreement.single.has_value(); })) {
+  if (any_scale([](const ScaleReport& scale) { return scale.agreement.single.has_value(); })) {
     methods.statistics.push_back(
-        {"Agreement between participants is ICC(2,1) and ICC(2,k), agreement with oneself "
+        {"Agreement between participants is ICC(2,1) and ICC(2,k), agreement within participants "
          "ICC(1,1).",
          {Source::shrout_fleiss}});
   }

@@ -1,4 +1,4 @@
-/// \file What the methods of a report say of ratings.
+/// \file Sentences of the methods section for ratings.
 #pragma once
 
 #include "analysis/report/methods.hpp"
@@ -6,7 +6,7 @@
 
 namespace touchtrial::analysis::rating {
 
-/// \param report  of these outcomes
+/// \param report  made from the outcomes
 [[nodiscard]] ProtocolMethods protocol_methods(const RatingReport& report,
                                                const Outcomes& outcomes);
 

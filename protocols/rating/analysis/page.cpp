@@ -29,7 +29,7 @@ std::string mean_words(const MeanEstimate& mean) {
                      counted(mean.participants, "participant"));
 }
 
-/// What the study is about: the first method less the second, or the only one.
+/// The mean difference between the first two methods, or the mean of the only one.
 std::string result_sentence(const RatingReport& report, const ScaleReport& scale) {
   const auto label = [&](int method) { return report.methods[static_cast<std::size_t>(method)]; };
   if (scale.differences.empty()) {
@@ -40,9 +40,9 @@ std::string result_sentence(const RatingReport& report, const ScaleReport& scale
                        plain_figure(only.mean.mean, kRatingDecimals), mean_words(only.mean));
   }
   const MethodDifference& pair = scale.differences.front();
-  const std::string names = "Mean rating, " + label(pair.first) + " less " + label(pair.second);
+  const std::string names = "Mean rating, " + label(pair.first) + " minus " + label(pair.second);
   if (!pair.difference.mean) {
-    return names + ": nobody rated every texture by both, so there is no difference.";
+    return names + ": nobody rated every texture with both, so there is no difference.";
   }
   std::string text =
       fmt::format("{}: {}{}", names, signed_plain_figure(pair.difference.mean, kRatingDecimals),
@@ -62,16 +62,16 @@ std::string result_sentence(const RatingReport& report, const ScaleReport& scale
 
 Section result_section(const RatingReport& report) {
   Section section{"result", "Result", {}};
-  const auto say = [&](std::string text) {
-    if (!text.empty()) section.blocks.emplace_back(Cited{std::move(text)});
+  const auto add = [&](std::string text) {
+    if (!text.empty()) section.blocks.emplace_back(CitedText{std::move(text)});
   };
   for (const ScaleReport& scale : report.scales) {
-    if (report.trials > 0) say(result_sentence(report, scale));
-    say(question_sentence(report, scale));
+    if (report.trials > 0) add(result_sentence(report, scale));
+    add(question_sentence(report, scale));
   }
-  if (report.trials == 0) say("No trial counts, so there is no result.");
+  if (report.trials == 0) add("No trial counts, so there is no result.");
   if (report.without_answer > 0) {
-    say(fmt::format("Left out: {} without an answer.", counted(report.without_answer, "trial")));
+    add(fmt::format("Left out: {} without an answer.", counted(report.without_answer, "trial")));
   }
   return section;
 }
@@ -91,12 +91,12 @@ std::string id_of(const RatingReport& report, const ScaleReport& scale, const st
 
 Document rating_document(const RatingReport& report, const Provenance& provenance,
                          const Pictures& pictures) {
-  const bool drawn = std::ranges::any_of(pictures, [](const Picture& one) {
-    return one.id.starts_with("ratings") && !one.svg.empty();
+  const bool has_figure = std::ranges::any_of(pictures, [](const Picture& picture) {
+    return picture.id.starts_with("ratings") && !picture.svg.empty();
   });
   return framed_document(
       report, result_section(report),
-      {differences_section(report), means_section(report, drawn), reliability_section(report),
+      {differences_section(report), means_section(report, has_figure), reliability_section(report),
        catches_section(report), use_section(report)},
       provenance, pictures);
 }

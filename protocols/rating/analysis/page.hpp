@@ -6,32 +6,28 @@
 
 namespace touchtrial::analysis::rating {
 
-/// The report after unblinding.
-/// \param pictures  in the order in which they appear
+/// \param pictures  in their order on the page
 [[nodiscard]] Document rating_document(const RatingReport& report, const Provenance& provenance,
                                        const Pictures& pictures = {});
 
-/// \name Sections of the page. Without a rating they have no blocks.
+/// \name Sections of the page, without blocks if there are no ratings
 /// \{
 
 /// Means by method and class, and by item.
-/// \param drawn  whether a figure shows the items, so that their table is folded
-[[nodiscard]] Section means_section(const RatingReport& report, bool drawn);
-/// Differences between methods.
+/// \param has_figure  folds the table of items
+[[nodiscard]] Section means_section(const RatingReport& report, bool has_figure);
 [[nodiscard]] Section differences_section(const RatingReport& report);
-/// Agreement between participants, and of participants with themselves.
+/// Agreement between and within participants.
 [[nodiscard]] Section reliability_section(const RatingReport& report);
-/// Use of the scale by participant.
 [[nodiscard]] Section use_section(const RatingReport& report);
-/// Catch trials beside scored ones.
 [[nodiscard]] Section catches_section(const RatingReport& report);
 
 /// \}
 
-/// "caption", and of several scales which one it is of.
+/// "caption", or "caption (scale fit)" in a report with several scales.
 [[nodiscard]] std::string caption_of(const RatingReport& report, const ScaleReport& scale,
                                      const std::string& caption);
-/// "name", and of several scales the number of this one: unique in a document.
+/// "name", or "name-2" in a report with several scales: unique in a document.
 [[nodiscard]] std::string id_of(const RatingReport& report, const ScaleReport& scale,
                                 const std::string& name);
 

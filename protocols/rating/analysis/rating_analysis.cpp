@@ -36,7 +36,7 @@ class RatingResults final : public Results {
   ItemPictures pictures_;
 };
 
-/// A thumbnail of a class's first picture.
+/// A thumbnail; empty if the file cannot be read.
 GreyImage picture_of(const std::filesystem::path& file) {
   try {
     const GreyImage grey = engine::read_grey_image(file);
@@ -45,42 +45,31 @@ GreyImage picture_of(const std::filesystem::path& file) {
     const auto side = [&](int length) { return std::max(1, length * kPictureSide_px / longer); };
     return engine::resized(grey, side(grey.height()), side(grey.width()));
   } catch (const Error&) {
-    return {};  // the figure omits it
+    return {};
   }
 }
 
 /// Thumbnails for a report with a page, if the study's pictures are available.
-ItemPictures item_pictures(const ReportOptions& wishes) {
+ItemPictures item_pictures(const ReportOptions& options) {
   ItemPictures pictures;
-  if (wishes.source == nullptr || !wishes.page) return pictures;
-  const study::Study& study = wishes.source->key.study;
-  for (const study::StudyClass& one : study.classes) {
-    pictures.push_back(one.images.empty() ? GreyImage()
-                                          : picture_of(study.folder / one.images.front()));
+  if (options.source == nullptr || !options.page) return pictures;
+  const study::Study& study = options.source->key.study;
+  for (const study::StudyClass& texture : study.classes) {
+    pictures.push_back(texture.images.empty() ? GreyImage()
+                                              : picture_of(study.folder / texture.images.front()));
   }
   return pictures;
-}
-
-void require_possible_wishes(const ReportOptions& wishes) {
-  if (!wishes.trial.empty()) {
-    throw UsageError("--trial: explorations of ratings are not drawn; leave the option out");
-  }
-  if (wishes.traces == ReportOptions::Traces::yes) {
-    throw UsageError(
-        "--cues yes: ideal observers are of studies whose participants choose between textures; "
-        "leave the option out");
-  }
 }
 
 class RatingAnalysis final : public ProtocolAnalysis {
  public:
   std::unique_ptr<const Results> results(const Outcomes& outcomes,
-                                         const ReportOptions& wishes) const override {
-    require_possible_wishes(wishes);
+                                         const ReportOptions& options) const override {
+    refuse_exploration_options(options, "explorations of ratings are not drawn");
     RatingReport report = make_report(outcomes);
     const ProtocolMethods methods = protocol_methods(report, outcomes);
-    return with_methods(std::make_unique<RatingResults>(std::move(report), item_pictures(wishes)),
-                        outcomes, wishes, methods);
+    return with_methods(std::make_unique<RatingResults>(std::move(report), item_pictures(options)),
+                        outcomes, options, methods);
   }
   std::vector<ResultTable> tables(const Outcomes& outcomes) const override {
     return {{"ratings.csv", ratings_table(outcomes)}};

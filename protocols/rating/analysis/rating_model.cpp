@@ -22,20 +22,17 @@ DataTable model_table(const Outcomes& outcomes) {
 }
 
 constexpr const char* kModelNotes =
-    "`rating_model.csv` has one row for each scale of each answered "
-    "trial that counts. `Rscript rating_model.R` prints, for each scale, two analyses; with "
-    "`--csv`, all their digits.\n\n1. Student's t over participants' own differences between "
-    "methods: the report's, and the result to quote.\n2. A linear mixed model (lme4, sum-coded)"
-    ":\n\n       rating ~ method * class + (1 + method + class | participant)\n\n   If it is "
-    "singular or does not converge, the same with `||` in place of `|`, then with `(1 + method | "
-    "participant)`, then with `||` there too; the script says which. If none does, there is no "
-    "model: one in which people differ in their level alone takes chance for a difference "
-    "between "
-    "methods too often. A difference is over all classes. Intervals and p have as many degrees "
-    "of "
-    "freedom as participants, less one.\n\nThe model takes ratings as numbers without ends and "
-    "with equal scatter. Where many lie at an end of the scale, or points are few, a model of "
-    "ordered categories suits them better (R's `ordinal::clmm`).\n";
+    "`rating_model.csv` has one row per scale of each counted answer. `Rscript rating_model.R` "
+    "prints two analyses for each scale; with `--csv`, all digits.\n\n1. Student's t over "
+    "participants' differences between methods: the report's, and the result to quote.\n2. A "
+    "linear mixed model (lme4, sum-coded):\n\n       rating ~ method * class + (1 + method + class "
+    "| participant)\n\n   If it is singular or does not converge, the same with `||` in place of "
+    "`|`, then with `(1 + method | participant)`, then with `||` there too; the script prints "
+    "which. If all fail, there is no model: one in which people differ only in level takes chance "
+    "for a difference between methods too often. A difference is over all classes. Intervals and p "
+    "have as many degrees of freedom as participants, minus one.\n\nThe model treats ratings as "
+    "unbounded numbers with equal variance. If many are at an end of the scale, or points are few, "
+    "a model of ordered categories is better (R's `ordinal::clmm`).\n";
 
 }  // namespace
 

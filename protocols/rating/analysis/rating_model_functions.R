@@ -1,7 +1,7 @@
-# The functions of rating_model.R: for each scale, Student's t over participants' own differences
-# between methods, and a linear mixed model rating ~ method * class in which participants differ in
-# what methods and classes do to them. Run as a script, with --csv for all digits; sourced, it only
-# defines.
+# The functions of rating_model.R: for each scale, Student's t over participants' differences
+# between methods, and a linear mixed model rating ~ method * class with random effects of
+# participants for methods and classes. As a script it prints the results (--csv: with all digits);
+# if sourced, it only defines functions.
 
 fewest_participants <- 6
 
@@ -39,7 +39,7 @@ with_holm <- function(rows) {
 
 # --- Participants ---
 
-# Each participant's mean by method over the classes, of those who rated them all.
+# The mean over classes by participant and method; NA unless the participant rated every class.
 own_means <- function(ratings) {
   cells <- tapply(ratings$rating, list(ratings$participant, ratings$method, ratings$class), mean)
   apply(cells, c(1, 2), mean)
@@ -68,8 +68,9 @@ coded <- function(ratings, name) {
   list(ratings = ratings, columns = columns)
 }
 
-# What participants differ in, the most first. None is without the methods: a model in which people
-# differ in their level alone takes chance for a difference between methods too often.
+# The random effects of participants, starting with the most complete. All include the methods: a
+# model in which people differ only in level mistakes chance for a difference between methods too
+# often.
 random_terms <- function(methods, classes) {
   inner <- unique(list(c("1", methods, classes), c("1", methods)))
   unlist(lapply(inner, function(terms) {
@@ -77,7 +78,7 @@ random_terms <- function(methods, classes) {
   }))
 }
 
-# The fit, or why there is none.
+# The fit, or the reason why there is none, as text.
 fitted_model <- function(formula, ratings) {
   fit <- tryCatch(suppressMessages(suppressWarnings(
     lme4::lmer(formula, data = ratings, control = lme4::lmerControl(optimizer = "bobyqa")))),
@@ -90,8 +91,8 @@ fitted_model <- function(formula, ratings) {
   fit
 }
 
-# Differences of all pairs over the classes. Degrees of freedom: those of participants, because what
-# is compared differs between them.
+# Differences of all pairs over the classes. There are as many degrees of freedom as participants,
+# minus one, because the effects differ between participants.
 of_model <- function(fit, ratings, columns) {
   methods <- levels(ratings$method)
   codes <- contr.sum(length(methods))
@@ -104,7 +105,7 @@ of_model <- function(fit, ratings, columns) {
   })))
 }
 
-# The rows of the first model that the ratings determine, with what there is to say.
+# The rows of the first model that the ratings determine, with the sentences to print.
 of_ratings <- function(ratings) {
   none <- function(...) list(rows = NULL, said = c(...))
   if (nlevels(ratings$method) < 2) return(none("No model: there is one method."))

@@ -19,7 +19,7 @@
 namespace touchtrial::analysis::rating {
 namespace {
 
-/// A participant's ratings of each item that was rated.
+/// One participant's ratings by item.
 using Repeats = std::map<Item, std::vector<double>>;
 
 using Items = std::set<Item>;
@@ -29,7 +29,7 @@ double length_of(const Interval& scale) {
 }
 
 /// The range of possible differences.
-Interval differences_on(const Interval& scale) {
+Interval difference_range(const Interval& scale) {
   return {-length_of(scale), length_of(scale)};
 }
 
@@ -37,19 +37,19 @@ void require_on_scale(std::span<const RatedParticipant> participants, const Inte
   if (!std::isfinite(length_of(scale)) || length_of(scale) <= 0.0) {
     throw std::invalid_argument("a scale needs two ends in ascending order");
   }
-  const auto on_scale = [&](double value) { return value >= scale.low && value <= scale.high; };
-  for (const RatedParticipant& one : participants) {
-    if (!std::ranges::all_of(one.scored, on_scale, &ItemRating::value) ||
-        !std::ranges::all_of(one.catches, on_scale)) {
-      throw std::invalid_argument("a rating lies beyond the ends of its scale");
+  const auto is_on_scale = [&](double value) { return value >= scale.low && value <= scale.high; };
+  for (const RatedParticipant& participant : participants) {
+    if (!std::ranges::all_of(participant.scored, is_on_scale, &ItemRating::value) ||
+        !std::ranges::all_of(participant.catches, is_on_scale)) {
+      throw std::invalid_argument("a rating is beyond the ends of its scale");
     }
   }
 }
 
 Repeats repeats_of(const RatedParticipant& participant, const Items& items) {
   Repeats repeats;
-  for (const ItemRating& one : participant.scored) {
-    if (items.contains(one.item)) repeats[one.item].push_back(one.value);
+  for (const ItemRating& rating : participant.scored) {
+    if (items.contains(rating.item)) repeats[rating.item].push_back(rating.value);
   }
   return repeats;
 }
@@ -57,7 +57,8 @@ Repeats repeats_of(const RatedParticipant& participant, const Items& items) {
 std::vector<Repeats> repeats_of(std::span<const RatedParticipant> participants,
                                 const Items& items) {
   std::vector<Repeats> all;
-  for (const RatedParticipant& one : participants) all.push_back(repeats_of(one, items));
+  for (const RatedParticipant& participant : participants)
+    all.push_back(repeats_of(participant, items));
   return all;
 }
 
@@ -88,85 +89,87 @@ MeanEstimate mean_over(std::span<const Repeats> participants, const Items& items
   return participant_mean(means, scale, level);
 }
 
-/// The items of each method, or of each class.
-std::map<int, Items> grouped(const Items& items, int Item::*by) {
+/// Groups items by method or by class.
+std::map<int, Items> items_by_group(const Items& items, int Item::*group_member) {
   std::map<int, Items> groups;
-  for (const Item& item : items) groups[item.*by].insert(item);
+  for (const Item& item : items) groups[item.*group_member].insert(item);
   return groups;
 }
 
 std::vector<GroupMean> group_means(std::span<const Repeats> participants, const Items& items,
-                                   int Item::*by, const Interval& scale, double level) {
+                                   int Item::*group_member, const Interval& scale, double level) {
   std::vector<GroupMean> means;
-  for (const auto& [group, own] : grouped(items, by)) {
+  for (const auto& [group, members] : items_by_group(items, group_member)) {
     means.push_back(
-        {group, static_cast<int>(own.size()), mean_over(participants, own, scale, level)});
+        {group, static_cast<int>(members.size()), mean_over(participants, members, scale, level)});
   }
   return means;
 }
 
-/// The F quantile with upper tail `tail`.
-double f_beyond(double degrees, double degrees_below, double tail) {
-  return quantile(complement(boost::math::fisher_f_distribution<>(degrees, degrees_below), tail));
+double f_quantile_upper(double degrees, double denominator_degrees, double tail) {
+  return quantile(
+      complement(boost::math::fisher_f_distribution<>(degrees, denominator_degrees), tail));
 }
 
-/// McGraw and Wong's degrees of freedom of the columns' and the residual mean square, weighed as
-/// the correlation weighs them.
-/// \return nothing if fewer than one
-std::optional<double> satterthwaite(const TwoWayMeanSquares& squares, double correlation) {
+/// McGraw and Wong's degrees of freedom for the combination of column and residual mean squares at
+/// this correlation.
+/// \return nothing if less than one
+std::optional<double> satterthwaite_degrees(const TwoWayMeanSquares& squares, double correlation) {
   const double n = squares.rows;
   const double k = squares.columns;
   const double columns = k * correlation * squares.between_columns;
   const double residual =
       (n * (1.0 - correlation) + k * correlation * (n - 1.0)) * squares.residual;
-  const double below = (columns * columns + residual * residual / (n - 1.0)) / (k - 1.0);
+  const double denominator = (columns * columns + residual * residual / (n - 1.0)) / (k - 1.0);
   const double sum = columns + residual;
-  if (below <= 0.0 || sum * sum < below) return std::nullopt;
-  return sum * sum / below;
+  if (denominator <= 0.0 || sum * sum < denominator) return std::nullopt;
+  return sum * sum / denominator;
 }
 
 /// The interval of single_agreement.
-std::optional<Interval> interval_of_single(const TwoWayMeanSquares& squares, double estimate,
-                                           double level) {
-  const auto degrees = satterthwaite(squares, estimate);
+std::optional<Interval> single_agreement_interval(const TwoWayMeanSquares& squares, double estimate,
+                                                  double level) {
+  const auto degrees = satterthwaite_degrees(squares, estimate);
   if (!degrees) return std::nullopt;
   const double n = squares.rows;
   const double k = squares.columns;
   const double tail = 0.5 * (1.0 - level);
-  const double of_rows = n * squares.between_rows;
-  const double of_residual = n * squares.residual;
-  const double others = k * squares.between_columns + (k * n - k - n) * squares.residual;
-  const double f_low = f_beyond(n - 1.0, *degrees, tail);
-  const double f_high = f_beyond(*degrees, n - 1.0, tail);
-  return Interval{(of_rows - f_low * of_residual) / (f_low * others + of_rows),
-                  (f_high * of_rows - of_residual) / (others + f_high * of_rows)};
+  const double row_term = n * squares.between_rows;
+  const double residual_term = n * squares.residual;
+  const double error_term = k * squares.between_columns + (k * n - k - n) * squares.residual;
+  const double f_low = f_quantile_upper(n - 1.0, *degrees, tail);
+  const double f_high = f_quantile_upper(*degrees, n - 1.0, tail);
+  return Interval{(row_term - f_low * residual_term) / (f_low * error_term + row_term),
+                  (f_high * row_term - residual_term) / (error_term + f_high * row_term)};
 }
 
-/// The Spearman-Brown formula: the reliability of means of k from that of single ratings.
-std::optional<double> of_means(double single, double k) {
-  const double below = 1.0 + (k - 1.0) * single;
-  if (below <= 0.0) return std::nullopt;
-  return k * single / below;
+/// The Spearman-Brown formula: the reliability of means of k ratings from the reliability of single
+/// ratings.
+std::optional<double> spearman_brown(double single, double k) {
+  const double denominator = 1.0 + (k - 1.0) * single;
+  if (denominator <= 0.0) return std::nullopt;
+  return k * single / denominator;
 }
 
-/// Nothing if leaving out one person leaves equal differences, which have no d_z.
-std::optional<JackknifeEstimate> jackknifed(double d_z, std::span<const double> differences,
-                                            double level) {
+/// The jackknife estimate of d_z. Nothing if the differences without one person are equal and thus
+/// have no d_z.
+std::optional<JackknifeEstimate> d_z_jackknife(double d_z, std::span<const double> differences,
+                                               double level) {
   if (differences.size() < 3) return std::nullopt;
-  std::vector<double> without;
+  std::vector<double> leave_one_out;
   for (std::size_t i = 0; i < differences.size(); ++i) {
     std::vector<double> others(differences.begin(), differences.end());
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    const auto other = t_statistic_without_interval(others);
-    if (!other) return std::nullopt;
-    without.push_back(other->d);
+    const auto statistic = t_statistic_without_interval(others);
+    if (!statistic) return std::nullopt;
+    leave_one_out.push_back(statistic->d);
   }
-  constexpr double kAny = std::numeric_limits<double>::max();
-  return jackknife(d_z, without, {-kAny, kAny}, level);
+  constexpr double kUnbounded = std::numeric_limits<double>::max();
+  return jackknife(d_z, leave_one_out, {-kUnbounded, kUnbounded}, level);
 }
 
-/// \return the p as the only one of its family
-std::optional<FamilyP> alone(std::optional<double> p) {
+/// A family with one test.
+std::optional<FamilyP> unadjusted(std::optional<double> p) {
   if (!p) return std::nullopt;
   return FamilyP{*p, *p};
 }
@@ -183,7 +186,7 @@ void adjust(std::span<MethodDifference> pairs, std::optional<FamilyP> MethodDiff
   }
 }
 
-/// The items of the first method whose class the second method also has.
+/// The items of the first method with a class that the second method has.
 Items shared_items(const Items& first, const Items& second) {
   Items shared;
   for (const Item& item : first) {
@@ -196,51 +199,46 @@ Items shared_items(const Items& first, const Items& second) {
 
 MethodDifference difference_of(std::span<const Repeats> participants, const Items& first,
                                const Items& second, const Interval& scale, double level) {
-  const Items of_first = shared_items(first, second);
-  const Items of_second = shared_items(second, first);
+  const Items first_items = shared_items(first, second);
+  const Items second_items = shared_items(second, first);
   std::vector<double> differences;
   for (const Repeats& repeats : participants) {
-    const auto higher = mean_over(repeats, of_first);
-    const auto lower = mean_over(repeats, of_second);
-    if (higher && lower) differences.push_back(without_noise(*higher - *lower));
+    const auto first_mean = mean_over(repeats, first_items);
+    const auto second_mean = mean_over(repeats, second_items);
+    if (first_mean && second_mean) differences.push_back(without_noise(*first_mean - *second_mean));
   }
   const auto statistic = t_statistic_without_interval(differences);
   const auto t = statistic ? std::optional(statistic->t) : std::nullopt;
   return {first.begin()->method,
           second.begin()->method,
-          static_cast<int>(of_first.size()),
-          participant_mean(differences, differences_on(scale), level),
+          static_cast<int>(first_items.size()),
+          participant_mean(differences, difference_range(scale), level),
           t,
-          alone(t ? t_test_p(differences, 0.0, Sides::two) : std::nullopt),
-          alone(sign_flip_p(differences)),
+          unadjusted(t ? t_test_p(differences, 0.0, Sides::two) : std::nullopt),
+          unadjusted(sign_flip_p(differences)),
           standardised_difference(differences, level)};
 }
 
 ScaleUse use_of(const RatedParticipant& participant, const Interval& scale) {
   std::vector<double> values;
-  for (const ItemRating& one : participant.scored) values.push_back(one.value);
+  for (const ItemRating& rating : participant.scored) values.push_back(rating.value);
   const auto n = static_cast<int>(values.size());
-  const auto at = [&](double end) {
+  const auto count_at = [&](double end) {
     return static_cast<int>(std::ranges::count_if(
         values, [end](double value) { return without_noise(value - end) == 0.0; }));
   };
-  ScaleUse use{.at_low = {n, at(scale.low)}, .at_high = {n, at(scale.high)}};
+  ScaleUse use{.at_low = {n, count_at(scale.low)}, .at_high = {n, count_at(scale.high)}};
   if (n == 0) return use;
   use.mean = mean_of(values);
   if (n > 1) {
     use.sd = without_noise(standard_deviation(values, *use.mean, n - 1.0));
-    use.narrow = *use.sd < kNarrowUse * length_of(scale);
+    use.is_narrow = *use.sd < kNarrowUse * length_of(scale);
   }
   std::ranges::sort(values);
   const auto end = std::unique(values.begin(), values.end(),
                                [](double a, double b) { return without_noise(b - a) == 0.0; });
   use.distinct = static_cast<int>(end - values.begin());
   return use;
-}
-
-void add(Proportion& all, const Proportion& own) {
-  all.n += own.n;
-  all.correct += own.correct;
 }
 
 }  // namespace
@@ -273,26 +271,26 @@ std::optional<TwoWayMeanSquares> two_way_mean_squares(std::span<const std::vecto
   }
   if (table.size() < 2 || columns < 2) return std::nullopt;
   const double mean = mean_of(row_means);
-  double rows_apart = 0.0;
-  double columns_apart = 0.0;
-  double rest = 0.0;
+  double row_squares = 0.0;
+  double column_squares = 0.0;
+  double residual_squares = 0.0;
   for (std::size_t i = 0; i < table.size(); ++i) {
     const double row = without_noise(row_means[i] - mean);
-    rows_apart += row * row;
+    row_squares += row * row;
     for (std::size_t j = 0; j < columns; ++j) {
-      const double left = without_noise(table[i][j] - row_means[i] - column_means[j] + mean);
-      rest += left * left;
+      const double residual = without_noise(table[i][j] - row_means[i] - column_means[j] + mean);
+      residual_squares += residual * residual;
     }
   }
-  for (const double own : column_means) {
-    const double column = without_noise(own - mean);
-    columns_apart += column * column;
+  for (const double column_mean : column_means) {
+    const double column = without_noise(column_mean - mean);
+    column_squares += column * column;
   }
   const auto n = static_cast<double>(table.size());
   const auto k = static_cast<double>(columns);
   return TwoWayMeanSquares{static_cast<int>(table.size()), static_cast<int>(columns),
-                           k * rows_apart / (n - 1.0), n * columns_apart / (k - 1.0),
-                           rest / ((n - 1.0) * (k - 1.0))};
+                           k * row_squares / (n - 1.0), n * column_squares / (k - 1.0),
+                           residual_squares / ((n - 1.0) * (k - 1.0))};
 }
 
 std::optional<IntraclassCorrelation> single_agreement(const TwoWayMeanSquares& squares,
@@ -304,7 +302,7 @@ std::optional<IntraclassCorrelation> single_agreement(const TwoWayMeanSquares& s
       n * squares.between_rows + (k * n - k - n) * squares.residual + k * squares.between_columns;
   if (all <= 0.0) return std::nullopt;
   const double estimate = n * (squares.between_rows - squares.residual) / all;
-  return IntraclassCorrelation{estimate, interval_of_single(squares, estimate, level)};
+  return IntraclassCorrelation{estimate, single_agreement_interval(squares, estimate, level)};
 }
 
 std::optional<IntraclassCorrelation> average_agreement(const TwoWayMeanSquares& squares,
@@ -312,12 +310,12 @@ std::optional<IntraclassCorrelation> average_agreement(const TwoWayMeanSquares& 
   const auto single = single_agreement(squares, level);
   if (!single) return std::nullopt;
   const double k = squares.columns;
-  const auto estimate = of_means(single->estimate, k);
+  const auto estimate = spearman_brown(single->estimate, k);
   if (!estimate) return std::nullopt;
   IntraclassCorrelation average{*estimate};
   if (!single->interval) return average;
-  const auto low = of_means(single->interval->low, k);
-  const auto high = of_means(single->interval->high, k);
+  const auto low = spearman_brown(single->interval->low, k);
+  const auto high = spearman_brown(single->interval->high, k);
   if (low && high) average.interval = Interval{*low, *high};
   return average;
 }
@@ -326,7 +324,7 @@ std::optional<double> one_way_correlation(std::span<const std::vector<double>> g
   double numbers = 0.0;
   double squared_sizes = 0.0;
   double sum = 0.0;
-  double used = 0.0;
+  double used_groups = 0.0;
   for (const std::vector<double>& group : groups) {
     require_finite(group, "an analysis of variance");
     if (group.size() < 2) continue;
@@ -334,24 +332,24 @@ std::optional<double> one_way_correlation(std::span<const std::vector<double>> g
     numbers += size;
     squared_sizes += size * size;
     sum += size * mean_of(group);
-    used += 1.0;
+    used_groups += 1.0;
   }
-  if (used < 2.0) return std::nullopt;
+  if (used_groups < 2.0) return std::nullopt;
   double between = 0.0;
   double within = 0.0;
   for (const std::vector<double>& group : groups) {
     if (group.size() < 2) continue;
     const double mean = mean_of(group);
-    const double apart = without_noise(mean - sum / numbers);
-    between += static_cast<double>(group.size()) * apart * apart;
+    const double deviation = without_noise(mean - sum / numbers);
+    between += static_cast<double>(group.size()) * deviation * deviation;
     for (const double value : group) {
-      const double left = without_noise(value - mean);
-      within += left * left;
+      const double residual = without_noise(value - mean);
+      within += residual * residual;
     }
   }
-  between /= used - 1.0;
-  within /= numbers - used;
-  const double size = (numbers - squared_sizes / numbers) / (used - 1.0);
+  between /= used_groups - 1.0;
+  within /= numbers - used_groups;
+  const double size = (numbers - squared_sizes / numbers) / (used_groups - 1.0);
   const double all = between + (size - 1.0) * within;
   if (all <= 0.0) return std::nullopt;
   return (between - within) / all;
@@ -383,22 +381,22 @@ RetestReliability retest_reliability(std::span<const RatedParticipant> participa
                                      std::span<const Item> items, double level) {
   require_level(level);
   RetestReliability result;
-  std::vector<double> known;
+  std::vector<double> correlations;
   std::vector<double> z;
   for (const Repeats& repeats : repeats_of(participants, Items(items.begin(), items.end()))) {
     std::vector<std::vector<double>> groups;
     for (const auto& [item, values] : repeats) groups.push_back(values);
-    const auto own = one_way_correlation(groups);
-    result.own.push_back(own);
-    if (!own) continue;
-    known.push_back(*own);
-    if (std::abs(*own) > kMaxCorrelation) ++result.cut;
-    z.push_back(std::atanh(std::clamp(*own, -kMaxCorrelation, kMaxCorrelation)));
+    const auto correlation = one_way_correlation(groups);
+    result.correlations.push_back(correlation);
+    if (!correlation) continue;
+    correlations.push_back(*correlation);
+    if (std::abs(*correlation) > kMaxCorrelation) ++result.clamped;
+    z.push_back(std::atanh(std::clamp(*correlation, -kMaxCorrelation, kMaxCorrelation)));
   }
-  result.participants = static_cast<int>(known.size());
-  result.quartiles = quartiles(known);
-  const double furthest = std::atanh(kMaxCorrelation);
-  const MeanEstimate mean = participant_mean(z, {-furthest, furthest}, level);
+  result.participants = static_cast<int>(correlations.size());
+  result.quartiles = quartiles(correlations);
+  const double max_z = std::atanh(kMaxCorrelation);
+  const MeanEstimate mean = participant_mean(z, {-max_z, max_z}, level);
   if (mean.mean) result.mean = std::tanh(*mean.mean);
   if (const auto interval = mean.known_interval()) {
     result.interval = Interval{std::tanh(interval->low), std::tanh(interval->high)};
@@ -409,11 +407,11 @@ RetestReliability retest_reliability(std::span<const RatedParticipant> participa
 ScaleUses scale_use(std::span<const RatedParticipant> participants, const Interval& scale) {
   require_on_scale(participants, scale);
   ScaleUses uses;
-  for (const RatedParticipant& one : participants) {
-    const ScaleUse use = use_of(one, scale);
-    add(uses.at_low, use.at_low);
-    add(uses.at_high, use.at_high);
-    uses.narrow += use.narrow ? 1 : 0;
+  for (const RatedParticipant& participant : participants) {
+    const ScaleUse use = use_of(participant, scale);
+    uses.at_low += use.at_low;
+    uses.at_high += use.at_high;
+    uses.narrow_count += use.is_narrow ? 1 : 0;
     uses.participants.push_back(use);
   }
   return uses;
@@ -426,7 +424,7 @@ std::optional<StandardisedDifference> standardised_difference(std::span<const do
   const auto statistic = t_statistic(differences, 0.0, level);
   if (!statistic) return std::nullopt;
   return StandardisedDifference{statistic->d, statistic->interval,
-                                jackknifed(statistic->d, differences, level)};
+                                d_z_jackknife(statistic->d, differences, level)};
 }
 
 std::vector<MethodDifference> method_differences(std::span<const RatedParticipant> participants,
@@ -435,7 +433,7 @@ std::vector<MethodDifference> method_differences(std::span<const RatedParticipan
   require_on_scale(participants, scale);
   const Items all(items.begin(), items.end());
   const std::vector<Repeats> repeats = repeats_of(participants, all);
-  const std::map<int, Items> methods = grouped(all, &Item::method);
+  const std::map<int, Items> methods = items_by_group(all, &Item::method);
   std::vector<MethodDifference> pairs;
   for (auto first = methods.begin(); first != methods.end(); ++first) {
     for (auto second = std::next(first); second != methods.end(); ++second) {
@@ -460,14 +458,14 @@ CatchComparison catch_comparison(std::span<const RatedParticipant> participants,
       means.push_back(mean_of(values));
     }
     if (means.empty() || participants[i].catches.empty()) continue;
-    const CatchRating own{static_cast<int>(i), mean_of(participants[i].catches), mean_of(means)};
-    result.participants.push_back(own);
-    catches.push_back(own.catches);
-    differences.push_back(without_noise(own.scored - own.catches));
+    const CatchRating rating{static_cast<int>(i), mean_of(participants[i].catches), mean_of(means)};
+    result.participants.push_back(rating);
+    catches.push_back(rating.catches);
+    differences.push_back(without_noise(rating.scored - rating.catches));
     if (differences.back() <= 0.0) ++result.not_lower;
   }
   result.catches = participant_mean(catches, scale, level);
-  result.difference = participant_mean(differences, differences_on(scale), level);
+  result.difference = participant_mean(differences, difference_range(scale), level);
   return result;
 }
 

@@ -1,5 +1,5 @@
-/// \file The numbers of a rating study, from the outcomes that count. A trial without an answer has
-/// no rating. Source: docs/rating.md, "What the report says".
+/// \file The numbers of a rating study, from counted outcomes. A trial without an answer has no
+/// rating. Source: docs/rating.md, "What the report contains".
 #pragma once
 
 #include "analysis/outcomes/outcomes.hpp"
@@ -14,15 +14,15 @@
 
 namespace touchtrial::analysis::rating {
 
-/// The answers on one scale. What is of a participant stands in the order of RatingReport::people.
+/// The answers on one scale. Numbers by participant are in the order of RatingReport::people.
 struct ScaleReport {
   study::Scale scale;
   RatingMeans means;
-  std::vector<std::vector<double>> own_means;  ///< of each of means.items: the participants' own
+  std::vector<std::vector<double>> participant_means;  ///< by means.items and participant
   std::vector<MethodDifference> differences;
   Agreement agreement;
-  /// Of each participant who rated all items: the standard deviation of what is left of the own
-  /// means of items when those of the participant and of the items are taken away.
+  /// By participant: the standard deviation of the item means after removing the effects of
+  /// participant and item. Nothing for participants who did not rate all items.
   std::vector<std::optional<double>> scatter;
   RetestReliability retest;
   ScaleUses use;
@@ -31,27 +31,27 @@ struct ScaleReport {
 
 struct RatingReport : StudyHead {
   std::vector<std::string> methods;  ///< labels
-  std::vector<std::string> people;   ///< whose session counts, in the order of sessions
-  int without_answer = 0;            ///< trials that count and have no rating
+  std::vector<std::string> people;   ///< with a counted session, in the order of sessions
+  int without_answer = 0;            ///< counted trials without a rating
   std::vector<ScaleReport> scales;
 };
 
-/// A session's trials that have ratings: those that count, and catch trials of sessions that count.
-/// The pointers refer to the outcomes.
+/// A participant's trials with ratings: counted trials, and catch trials of counted sessions.
+/// Pointers into the outcomes.
 struct RatedTrials {
   std::string participant;
   std::vector<const TrialOutcome*> trials;  ///< by session and trial
 };
 
 /// \param outcomes  must outlive the result
-/// \return in the order of sessions; also those without a trial
+/// \return in the order of sessions, including participants without a trial
 [[nodiscard]] std::vector<RatedTrials> rated_trials(const Outcomes& outcomes);
 
 [[nodiscard]] RatingReport make_report(const Outcomes& outcomes);
 
 [[nodiscard]] Interval ends_of(const study::Scale& scale);
 
-/// How a reader could misread the numbers, the gravest first.
+/// Warnings against misreading the report, the most serious first.
 /// \param report  complete except for its warnings
 [[nodiscard]] std::vector<std::string> rating_warnings(const RatingReport& report);
 

@@ -12,9 +12,10 @@ void put_estimate(Json& object, const MeanEstimate& mean) {
   object["sd"] = figure_json(mean.sd);
 }
 
-Json correlation_json(const std::optional<IntraclassCorrelation>& one) {
-  if (!one) return nullptr;
-  return {{"estimate", figure_json(one->estimate)}, {"interval", interval_json(one->interval)}};
+Json correlation_json(const std::optional<IntraclassCorrelation>& correlation) {
+  if (!correlation) return nullptr;
+  return {{"estimate", figure_json(correlation->estimate)},
+          {"interval", interval_json(correlation->interval)}};
 }
 
 Json mean_squares_json(const std::optional<TwoWayMeanSquares>& squares) {
@@ -34,20 +35,19 @@ Json agreement_json(const Agreement& agreement) {
 }
 
 Json retest_json(const RetestReliability& retest) {
-  Json object{{"participants", retest.participants},
-              {"mean", figure_json(retest.mean)},
-              {"interval", interval_json(retest.interval)},
-              {"cut", retest.cut}};
-  object["own"] = quartiles_json(retest.quartiles);
-  return object;
+  return {{"participants", retest.participants},
+          {"mean", figure_json(retest.mean)},
+          {"interval", interval_json(retest.interval)},
+          {"cut", retest.clamped},
+          {"own", quartiles_json(retest.quartiles)}};
 }
 
 Json use_json(const RatingReport& report, const ScaleReport& scale) {
   return {{"n", scale.use.at_low.n},
           {"at_low", scale.use.at_low.correct},
           {"at_high", scale.use.at_high.correct},
-          {"narrow", scale.use.narrow},
-          {"participants", objects_of(people_of(report), use_measures(report, scale))}};
+          {"narrow", scale.use.narrow_count},
+          {"participants", objects_of(people_indices(report), use_measures(report, scale))}};
 }
 
 Json catches_json(const RatingReport& report, const CatchComparison& catches) {
@@ -81,10 +81,8 @@ Json scale_json(const RatingReport& report, const ScaleReport& scale) {
 
 std::string report_json(const RatingReport& report) {
   Json members{{"methods", report.methods}, {"without_answer", report.without_answer}};
-  members["scales"] = Json::array();
-  for (const ScaleReport& scale : report.scales) {
-    members["scales"].push_back(scale_json(report, scale));
-  }
+  members["scales"] = array_json(
+      report.scales, [&](const ScaleReport& scale) { return scale_json(report, scale); });
   return framed_json(report, members.dump());
 }
 

@@ -1,6 +1,6 @@
 #include "protocols/rating/analysis/tables.hpp"
 
-#include "analysis/exports/dataset.hpp"
+#include "analysis/exports/column_meanings.hpp"
 #include "protocols/rating/analysis/report.hpp"
 #include "protocols/rating/study/rating.hpp"
 
@@ -45,12 +45,12 @@ DataTable ratings_table(const Outcomes& outcomes) {
 std::vector<TrialColumn> rating_columns(const Outcomes& outcomes) {
   std::vector<TrialColumn> columns;
   for (const study::Scale& scale : study::rating::scales_of(outcomes.design)) {
-    const std::size_t place = columns.size();
+    const std::size_t index = columns.size();
     columns.push_back(
-        {std::string(kRatingColumn) + scale.id, true, [place](const TrialView& trial) -> DataCell {
+        {std::string(kRatingColumn) + scale.id, true, [index](const TrialView& trial) -> DataCell {
            const std::vector<double> ratings = ratings_of(trial.row.answer);
-           if (place >= ratings.size()) return std::monostate{};
-           return ratings[place];
+           if (index >= ratings.size()) return std::monostate{};
+           return ratings[index];
          }});
   }
   return columns;

@@ -8,8 +8,8 @@
 
 namespace touchtrial::analysis::rating {
 
-/// ratings.csv: one row for each scale of each answered trial, scored or catch, of sessions that
-/// count. Class, method and exemplar of a catch trial are empty.
+/// ratings.csv: one row per scale of each answered trial, scored or catch, of counted sessions.
+/// Class, method and exemplar of a catch trial are empty.
 [[nodiscard]] DataTable ratings_table(const Outcomes& outcomes);
 
 /// Additional columns of trial tables: the rating on each scale.

@@ -1,3 +1,4 @@
+#include "analysis/report/page/wording.hpp"
 #include "analysis/statistics/common.hpp"
 #include "core/text.hpp"
 #include "protocols/rating/analysis/report.hpp"
@@ -10,51 +11,50 @@
 namespace touchtrial::analysis::rating {
 namespace {
 
-constexpr double kUsualLevel = 0.05;
-/// Somebody's scatter over the median of all: people who scatter alike exceed it in one study of
-/// 200. Source: docs/rating.md, "Agreement".
+/// The maximum ratio of a participant's scatter to the median scatter. If all participants scatter
+/// equally, one study in 200 exceeds it. Source: docs/rating.md, "Agreement".
 constexpr double kUnevenScatter = 2.5;
 
-using Warnings = std::vector<std::string>;
+using WarningTexts = std::vector<std::string>;
 
-void warn_of_catches(const RatingReport& report, const ScaleReport& scale, Warnings& all) {
+void warn_of_catches(const RatingReport& report, const ScaleReport& scale, WarningTexts& all) {
   std::vector<std::string> names;
-  for (const CatchRating& one : scale.catches.participants) {
-    if (without_noise(one.scored - one.catches) > 0.0) continue;
-    names.push_back(report.people[static_cast<std::size_t>(one.participant)]);
+  for (const CatchRating& rating : scale.catches.participants) {
+    if (without_noise(rating.scored - rating.catches) > 0.0) continue;
+    names.push_back(report.people[static_cast<std::size_t>(rating.participant)]);
   }
   const int n = static_cast<int>(scale.catches.participants.size());
   const auto interval = scale.catches.difference.known_interval();
   if (n > 0 && (scale.catches.difference.mean <= 0.0 || (interval && interval->low <= 0.0))) {
-    all.push_back(
-        fmt::format("Catch trials, in which there is nothing to feel, are not rated reliably lower "
-                    "than textures ({}): ratings may reflect the pictures alone.",
-                    counted(n, "participant")));
+    all.push_back(fmt::format(
+        "Catch trials, which have no texture, are not rated reliably lower than textures "
+        "({}): ratings may reflect only the pictures.",
+        counted(n, "participant")));
   }
   if (names.empty()) return;
   all.push_back(fmt::format("Catch trials are rated at least as high as textures by {}.",
                             listed(names, " and ")));
 }
 
-/// The least sign-flip p of so many people, adjusted for all pairs, is above the usual level.
-void warn_of_few(const ScaleReport& scale, Warnings& all) {
+/// Warns if the smallest sign-flip p, adjusted for all pairs, is above the usual level.
+void warn_of_few_participants(const ScaleReport& scale, WarningTexts& all) {
   if (scale.differences.empty()) return;
   const auto pairs = static_cast<double>(scale.differences.size());
   int fewest = scale.differences.front().difference.participants;
-  for (const MethodDifference& one : scale.differences) {
-    fewest = std::min(fewest, one.difference.participants);
+  for (const MethodDifference& pair : scale.differences) {
+    fewest = std::min(fewest, pair.difference.participants);
   }
   if (fewest == 0 || pairs * std::ldexp(1.0, 1 - fewest) <= kUsualLevel) return;
   all.push_back(fmt::format(
-      "With {} sign flips cannot give a p of {} or less{}, whatever the difference.",
+      "With {}, sign flips cannot give a p of {} or less{}, regardless of the difference.",
       counted(fewest, "participant"), kUsualLevel,
       pairs > 1.0 ? fmt::format(" for the first of {} pairs", scale.differences.size()) : ""));
 }
 
-void warn_of_narrow_use(const RatingReport& report, const ScaleReport& scale, Warnings& all) {
+void warn_of_narrow_use(const RatingReport& report, const ScaleReport& scale, WarningTexts& all) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < report.people.size(); ++i) {
-    if (scale.use.participants[i].narrow) names.push_back(report.people[i]);
+    if (scale.use.participants[i].is_narrow) names.push_back(report.people[i]);
   }
   if (names.empty()) return;
   all.push_back(
@@ -63,25 +63,25 @@ void warn_of_narrow_use(const RatingReport& report, const ScaleReport& scale, Wa
                   listed(names, " and "), 100.0 * kNarrowUse));
 }
 
-void warn_of_scatter(const ScaleReport& scale, Warnings& all) {
-  std::vector<double> known;
-  for (const auto& one : scale.scatter) {
-    if (one) known.push_back(*one);
+void warn_of_scatter(const ScaleReport& scale, WarningTexts& all) {
+  std::vector<double> scatters;
+  for (const auto& scatter : scale.scatter) {
+    if (scatter) scatters.push_back(*scatter);
   }
-  const Quartiles spread = quartiles(known);
-  if (known.size() < 3 || !scale.agreement.single) return;
-  const double most = *std::ranges::max_element(known);
-  if (most <= kUnevenScatter * *spread.median) return;
+  const Quartiles spread = quartiles(scatters);
+  if (scatters.size() < 3 || !scale.agreement.single) return;
+  const double largest = *std::ranges::max_element(scatters);
+  if (largest <= kUnevenScatter * *spread.median) return;
   all.push_back(
       "Participants' variances around the common pattern differ strongly. The intervals of "
-      "ICC(2,1) and ICC(2,k) assume equal variances and are too narrow.");
+      "ICC(2,1) and ICC(2,k) assume equal variances, and are too narrow.");
 }
 
-void warn_of_left_out(const ScaleReport& scale, Warnings& all) {
+void warn_of_left_out(const ScaleReport& scale, WarningTexts& all) {
   if (scale.agreement.left_out == 0) return;
   all.push_back(
-      fmt::format("{} without a rating of every texture by every method; means over textures and "
-                  "the agreement exclude them.",
+      fmt::format("{} without a rating of every texture with every method; means over textures and "
+                  "agreement exclude them.",
                   scale.agreement.left_out == 1
                       ? "One participant is"
                       : fmt::format("{} participants are", scale.agreement.left_out)));
@@ -90,16 +90,16 @@ void warn_of_left_out(const ScaleReport& scale, Warnings& all) {
 }  // namespace
 
 std::vector<std::string> rating_warnings(const RatingReport& report) {
-  Warnings all;
+  WarningTexts all;
   if (report.people.empty()) return all;
   for (const ScaleReport& scale : report.scales) {
-    Warnings own;
-    warn_of_catches(report, scale, own);
-    warn_of_few(scale, own);
-    warn_of_narrow_use(report, scale, own);
-    warn_of_scatter(scale, own);
-    warn_of_left_out(scale, own);
-    for (std::string& sentence : own) {
+    WarningTexts scale_warnings;
+    warn_of_catches(report, scale, scale_warnings);
+    warn_of_few_participants(scale, scale_warnings);
+    warn_of_narrow_use(report, scale, scale_warnings);
+    warn_of_scatter(scale, scale_warnings);
+    warn_of_left_out(scale, scale_warnings);
+    for (std::string& sentence : scale_warnings) {
       all.push_back(report.scales.size() > 1 ? fmt::format("Scale {}: {}", scale.scale.id, sentence)
                                              : std::move(sentence));
     }

@@ -17,7 +17,7 @@
 namespace touchtrial::planning::rating {
 namespace {
 
-int method_named(const study::Study& study, const std::string& label) {
+int method_index(const study::Study& study, const std::string& label) {
   for (int i = 0; i < study.presented_methods(); ++i) {
     if (study.methods[static_cast<std::size_t>(i)].label == label) return i;
   }
@@ -36,11 +36,11 @@ MethodPair compared_methods(const study::Study& study, const std::vector<std::st
     throw UsageError("--methods: give two different methods as A,B, of: " +
                      study.presented_labels());
   }
-  return {method_named(study, labels[0]), method_named(study, labels[1])};
+  return {method_index(study, labels[0]), method_index(study, labels[1])};
 }
 
 /// \throws UsageError if a size is too small ever to be significant
-void require_enough(const RatingPlan& plan) {
+void require_min_size(const RatingPlan& plan) {
   const int min_size = min_participants(plan.alpha);
   for (const int size : plan.participants) {
     if (size >= min_size) continue;
@@ -66,7 +66,7 @@ class RatingPlanner final : public Planner {
     return kOptions;
   }
 
-  std::string power(const study::Study& study, const PowerOptions& options,
+  PowerResult power(const study::Study& study, const PowerOptions& options,
                     const PowerTools& tools) const override {
     const MethodPair pair = compared_methods(study, options.methods);
     RatingPlanReport report;
@@ -74,7 +74,7 @@ class RatingPlanner final : public Planner {
                    .runs = options.plan.runs,
                    .seed = options.plan.seed,
                    .alpha = options.plan.level};
-    require_enough(report.plan);
+    require_min_size(report.plan);
     const simulation::SubjectModel subject = tools.subject();
     report.setting = {study.name, words_of(subject),
                       study.methods[static_cast<std::size_t>(pair.first)].label,
@@ -89,7 +89,8 @@ class RatingPlanner final : public Planner {
                                     tools.progress("simulating ratings"));
     require_people(report.pool);
     report.rows = rows_of(report.pool, report.plan, options.jobs);
-    return options.json ? rating_plan_json(report) : rating_plan_text(report);
+    return {options.json ? rating_plan_json(report) : rating_plan_text(report),
+            rating_power_curve(report)};
   }
 };
 

@@ -1,4 +1,4 @@
-/// \file The planning of rating studies.
+/// \file Planning of rating studies.
 #pragma once
 
 #include "analysis/planning/planner.hpp"

@@ -11,7 +11,6 @@
 namespace touchtrial::planning::rating {
 namespace {
 
-/// One sample on one scale.
 struct SampleResult {
   std::optional<double> width;
   bool significant = false;
@@ -34,7 +33,7 @@ std::vector<SampledPerson> draw_sample(int people, int size, RandomStream& rando
   return sample;
 }
 
-bool rejects(std::span<const double> differences, double alpha) {
+bool is_rejected(std::span<const double> differences, double alpha) {
   const auto p = analysis::sign_flip_p(differences);
   return p && *p <= alpha;
 }
@@ -42,19 +41,19 @@ bool rejects(std::span<const double> differences, double alpha) {
 SampleResult result_of(const PooledScale& scale, std::span<const SampledPerson> sample,
                        double alpha) {
   std::vector<double> differences;
-  std::vector<double> under_null;
+  std::vector<double> null_differences;
   for (const SampledPerson& one : sample) {
     const auto& difference = scale.people[one.person].difference;
     if (!difference) continue;
     differences.push_back(*difference);
-    under_null.push_back(one.sign * *difference);
+    null_differences.push_back(one.sign * *difference);
   }
   const double range = scale.ends.high - scale.ends.low;
   const auto interval = analysis::participant_mean(differences, {-range, range}).known_interval();
   SampleResult result;
   if (interval) result.width = interval->high - interval->low;
-  result.significant = rejects(differences, alpha);
-  result.false_alarm = rejects(under_null, alpha);
+  result.significant = is_rejected(differences, alpha);
+  result.false_alarm = is_rejected(null_differences, alpha);
   return result;
 }
 
@@ -62,13 +61,13 @@ DifferencePower power_of(std::span<const std::vector<SampleResult>> samples, std
   DifferencePower power;
   std::vector<double> widths;
   for (const std::vector<SampleResult>& sample : samples) {
-    const SampleResult& own = sample[scale];
-    power.significant.add(own.significant);
-    power.false_alarms.add(own.false_alarm);
-    if (own.width) {
-      widths.push_back(*own.width);
+    const SampleResult& result = sample[scale];
+    power.significant.add(result.significant);
+    power.false_alarms.add(result.false_alarm);
+    if (result.width) {
+      widths.push_back(*result.width);
     } else {
-      ++power.without;
+      ++power.without_interval;
     }
   }
   power.power = analysis::wilson_interval(power.significant);
@@ -87,7 +86,7 @@ int min_participants(double alpha) {
 
 double attainable_error(int participants, double alpha) {
   if (participants > analysis::kExactSignFlips) return alpha;
-  // Opposite patterns of signs have the same p.
+  // Opposite sign patterns have the same p.
   const double pairs = std::ldexp(1.0, participants - 1);
   return std::floor(alpha * pairs) / pairs;
 }

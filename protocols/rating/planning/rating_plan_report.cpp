@@ -6,6 +6,7 @@
 #include "protocols/rating/planning/rating_plan.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -16,18 +17,19 @@ namespace {
 using analysis::MeanEstimate;
 using nlohmann::ordered_json;
 
-/// The mean over the participants of the pool who have the number.
-MeanEstimate pool_mean(const PooledScale& scale, std::optional<double> PooledRating::*what) {
+/// The mean over the pool's participants who have this number.
+MeanEstimate pool_mean(const PooledScale& scale, std::optional<double> PooledRating::*number) {
   std::vector<double> values;
   for (const PooledRating& one : scale.people) {
-    if (one.*what) values.push_back(*(one.*what));
+    if (one.*number) values.push_back(*(one.*number));
   }
   const double length = scale.ends.high - scale.ends.low;
-  return analysis::participant_mean(
-      values, what == &PooledRating::difference ? analysis::Interval{-length, length} : scale.ends);
+  return analysis::participant_mean(values, number == &PooledRating::difference
+                                                ? analysis::Interval{-length, length}
+                                                : scale.ends);
 }
 
-/// The standard error of a mean, due to the finite pool.
+/// The standard error of a mean due to the finite pool.
 std::optional<double> pool_error(const MeanEstimate& mean) {
   if (!mean.sd) return std::nullopt;
   return *mean.sd / std::sqrt(static_cast<double>(mean.participants));
@@ -44,8 +46,8 @@ std::string share_text(const analysis::Proportion& share, const analysis::Interv
 std::string pool_text(const RatingPlanReport& report) {
   analysis::TextTable table({"scale", "ratings", "people", "mean", "SD", "error of mean"}, {0, 1});
   for (const PooledScale& scale : report.pool.scales) {
-    const auto add = [&](const std::string& what, const MeanEstimate& mean) {
-      table.add({scale.id, what, std::to_string(mean.participants), number_text(mean.mean),
+    const auto add = [&](const std::string& name, const MeanEstimate& mean) {
+      table.add({scale.id, name, std::to_string(mean.participants), number_text(mean.mean),
                  number_text(mean.sd), number_text(pool_error(mean))});
     };
     add(report.setting.first, pool_mean(scale, &PooledRating::first));
@@ -61,10 +63,11 @@ std::string power_text(const RatingPlanReport& report) {
       {"scale", "participants", "power, %", "type-I error, %", "attainable, %", "interval width"});
   for (const RatingRow& row : report.rows) {
     for (std::size_t i = 0; i < row.scales.size(); ++i) {
-      const DifferencePower& own = row.scales[i];
+      const DifferencePower& power = row.scales[i];
       table.add({report.pool.scales[i].id, std::to_string(row.participants),
-                 share_text(own.significant, own.power), share_text(own.false_alarms, own.type_one),
-                 power_per_cent(row.attainable), number_text(own.width)});
+                 share_text(power.significant, power.power),
+                 share_text(power.false_alarms, power.type_one), power_per_cent(row.attainable),
+                 number_text(power.width)});
     }
   }
   return table.text();
@@ -94,8 +97,9 @@ std::vector<std::string> sentences_of(const RatingPlanReport& report) {
       "excluded from a sample, as in a study. Add the participants that you expect to lose."};
   if (report.pool.scales.size() > 1) {
     sentences.emplace_back(
-        "Each scale is tested separately, without adjustment: with several scales, the study "
-        "should state which one decides.");
+        "Each scale is tested separately, without adjustment, so the study should state which "
+        "scale "
+        "is decisive.");
   }
   return sentences;
 }
@@ -112,8 +116,8 @@ ordered_json share_json(const analysis::Proportion& share, const analysis::Inter
           {"high", interval.high}};
 }
 
-ordered_json mean_json(const std::string& what, const MeanEstimate& mean) {
-  return {{"of", what},
+ordered_json mean_json(const std::string& name, const MeanEstimate& mean) {
+  return {{"of", name},
           {"people", mean.participants},
           {"mean", number_json(mean.mean)},
           {"sd", number_json(mean.sd)},
@@ -131,19 +135,31 @@ ordered_json scale_json(const RatingPlanReport& report, std::size_t index) {
        mean_json(compared_words(report), pool_mean(scale, &PooledRating::difference))}};
   object["sizes"] = ordered_json::array();
   for (const RatingRow& row : report.rows) {
-    const DifferencePower& own = row.scales[index];
-    ordered_json error = share_json(own.false_alarms, own.type_one);
+    const DifferencePower& power = row.scales[index];
+    ordered_json error = share_json(power.false_alarms, power.type_one);
     error["attainable"] = row.attainable;
     object["sizes"].push_back({{"participants", row.participants},
-                               {"power", share_json(own.significant, own.power)},
+                               {"power", share_json(power.significant, power.power)},
                                {"type_one_error", error},
-                               {"interval_width", number_json(own.width)},
-                               {"samples_without_interval", own.without}});
+                               {"interval_width", number_json(power.width)},
+                               {"samples_without_interval", power.without_interval}});
   }
   return object;
 }
 
 }  // namespace
+
+PowerCurve rating_power_curve(const RatingPlanReport& report) {
+  PowerCurve curve{report.setting.study, "significant difference, " + compared_words(report), {}};
+  for (std::size_t i = 0; i < report.pool.scales.size(); ++i) {
+    PowerSeries series{report.pool.scales.size() > 1 ? report.pool.scales[i].id : "", {}};
+    for (const RatingRow& row : report.rows) {
+      series.points.push_back({row.participants, row.scales[i].significant});
+    }
+    curve.series.push_back(std::move(series));
+  }
+  return curve;
+}
 
 std::string rating_plan_text(const RatingPlanReport& report) {
   const std::string stamp = analysis::wrapped("", stamp_of(report));

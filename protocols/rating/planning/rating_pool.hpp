@@ -1,6 +1,5 @@
 /// \file A pool of simulated participants with their ratings, from which studies of any size are
-/// drawn.
-/// Source: docs/planning.md, "Power of rating studies".
+/// drawn. Source: docs/planning.md, "Power of rating studies".
 #pragma once
 
 #include "analysis/planning/pool_sessions.hpp"
@@ -17,7 +16,7 @@
 
 namespace touchtrial::planning::rating {
 
-/// Indices of the two compared methods of the study.
+/// Indices of the study's two compared methods.
 struct MethodPair {
   int first = 0;
   int second = 1;
@@ -27,7 +26,7 @@ struct MethodPair {
 /// and a mean is missing if a texture was never rated.
 struct PooledRating {
   std::optional<double> first;       ///< mean with the first method
-  std::optional<double> second;      ///< with the second
+  std::optional<double> second;      ///< mean with the second method
   std::optional<double> difference;  ///< first minus second
 
   friend bool operator==(const PooledRating&, const PooledRating&) = default;
@@ -37,7 +36,7 @@ struct PooledRating {
 struct PooledScale {
   std::string id;
   analysis::Interval ends;
-  std::vector<PooledRating> people;  ///< the same, in the same order, on every scale
+  std::vector<PooledRating> people;  ///< same people in the same order on every scale
 };
 
 /// Participants who completed all sessions of the study.
@@ -49,8 +48,8 @@ struct RatingPool {
 
 struct RatingPoolOptions {
   int people = 100;        ///< >= 2
-  std::uint64_t seed = 1;  ///< of all random numbers of participants, as in `simulate --seed`
-  int jobs = 1;            ///< threads; results do not depend on them
+  std::uint64_t seed = 1;  ///< of the participants, as in `simulate --seed`
+  int jobs = 1;            ///< number of threads; does not affect results
 };
 
 /// Simulates the sessions of a pool.

@@ -13,9 +13,9 @@ namespace {
 
 constexpr double kMinThoughtS = 1.5;
 constexpr double kMaxThoughtS = 6.0;
-/// The distance beyond the noise, in its standard deviations, at which a fit has fallen to 1/e.
-constexpr double kScale = 1.5;
-// Differences between participants in the use of a scale.
+/// The distance in excess of the noise, in its standard deviations, at which a fit falls to 1/e.
+constexpr double kFitDecay = 1.5;
+// Standard deviations between participants in the use of a scale.
 constexpr double kShiftSd = 0.08;
 constexpr double kLogStretchSd = 0.25;
 
@@ -27,12 +27,12 @@ Expectations expectations_of(const PopulationSetting& setting) {
     const auto method = static_cast<std::size_t>(field.stimulus.method);
     return study.methods[method].control != engine::Control::none;
   };
-  const bool only_controls = std::ranges::all_of(fields.all(), is_control);
+  const bool has_only_controls = std::ranges::all_of(fields.all(), is_control);
   Expectations expectations;
   std::map<std::string, double> counts;
   for (const engine::FeltExample& example : learnt->examples) {
     const LabelledField& field = fields.all()[static_cast<std::size_t>(example.label)];
-    if (is_control(field) && !only_controls) continue;
+    if (is_control(field) && !has_only_controls) continue;
     engine::FeltFeatures& sum = expectations[field.label];
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += example.features[i];
     ++counts[field.label];
@@ -62,11 +62,11 @@ class RatingPopulation final : public Population {
   Expectations expectations_;
 };
 
-double deviation(const char* purpose, std::uint64_t seed, int number) {
+double person_deviation(const char* purpose, std::uint64_t seed, int number) {
   return RandomStream(seed, purpose, static_cast<std::uint64_t>(number)).normal();
 }
 
-double on_scale(const study::Scale& scale, double share) {
+double rating_at(const study::Scale& scale, double share) {
   const double value = scale.min() + share * (scale.max() - scale.min());
   if (scale.points > 0) return std::round(value);
   return std::round(value / study::kLineStep) * study::kLineStep;
@@ -85,8 +85,9 @@ RatingParticipant::RatingParticipant(const SubjectModel& subject, const study::S
       number_(number),
       individual_(subject, seed, number),
       condition_(subject, seed, number),
-      shift_(kShiftSd * deviation("subject: rating shift", seed, number)),
-      stretch_(std::exp(kLogStretchSd * deviation("subject: rating stretch", seed, number))) {}
+      shift_(kShiftSd * person_deviation("subject: rating shift", seed, number)),
+      stretch_(
+          std::exp(kLogStretchSd * person_deviation("subject: rating stretch", seed, number))) {}
 
 void RatingParticipant::begin_visit(int visit, TrialCourse course) {
   condition_ = Condition(subject_, seed_, number_, visit, static_cast<int>(course.size()));
@@ -95,35 +96,37 @@ void RatingParticipant::begin_visit(int visit, TrialCourse course) {
 double RatingParticipant::fit_of(engine::FeltFeatures felt, double noise_factor,
                                  RandomStream& random) const {
   const engine::FeltNoise noise = individual_.noise();
-  const double shared = noise_factor * noise.common * random.normal();
-  const double sd = std::max(1e-9, std::hypot(noise.own, noise.common));
+  const double common_noise = noise_factor * noise.common * random.normal();
+  const double sd = std::max(1e-9, std::hypot(noise.independent, noise.common));
   if (individual_.floor()) individual_.floor()->apply_to(felt);
-  for (double& feature : felt) feature += shared + noise_factor * noise.own * random.normal();
-  const auto expected = expectations_.find(picture_);
-  if (expected == expectations_.end()) return 0.5;
-  engine::FeltFeatures perceived = expected->second;
-  if (individual_.floor()) individual_.floor()->apply_to(perceived);
+  for (double& feature : felt)
+    feature += common_noise + noise_factor * noise.independent * random.normal();
+  const auto expectation = expectations_.find(picture_);
+  if (expectation == expectations_.end()) return 0.5;
+  engine::FeltFeatures expected_features = expectation->second;
+  if (individual_.floor()) individual_.floor()->apply_to(expected_features);
   double squares = 0.0;
   for (std::size_t i = 0; i < felt.size(); ++i) {
-    squares += (felt[i] - perceived[i]) * (felt[i] - perceived[i]) / (sd * sd);
+    squares += (felt[i] - expected_features[i]) * (felt[i] - expected_features[i]) / (sd * sd);
   }
   // Noise alone gives a mean square of 1.
-  const double beyond = std::max(0.0, squares / static_cast<double>(felt.size()) - 1.0);
-  return std::exp(-std::sqrt(beyond) / kScale);
+  const double excess = std::max(0.0, squares / static_cast<double>(felt.size()) - 1.0);
+  return std::exp(-std::sqrt(excess) / kFitDecay);
 }
 
 ParticipantAnswer RatingParticipant::choose(const engine::FeltFeatures& felt,
                                             RandomStream& random) {
-  const Moment moment = condition_.before(begun(), 0);
-  const bool lapses = random.uniform() < with_log_odds(individual_.lapse(), moment.lapse_log_odds);
+  const ConditionEffects moment = condition_.effects_on(presentations_begun(), 0);
+  const bool is_lapse =
+      random.uniform() < with_log_odds(individual_.lapse(), moment.lapse_log_odds);
   const double thought_s = random.uniform(kMinThoughtS, kMaxThoughtS);
   const double fit = fit_of(felt, moment.noise_factor, random);
   ParticipantAnswer answer;
   answer.thought = std::chrono::milliseconds(std::llround(thought_s * 1000.0));
   for (const study::Scale& scale : scales_) {
-    const double anything = random.uniform();
-    const double own = std::clamp(0.5 + shift_ + stretch_ * (fit - 0.5), 0.0, 1.0);
-    answer.ratings.push_back(on_scale(scale, lapses ? anything : own));
+    const double random_share = random.uniform();
+    const double fit_share = std::clamp(0.5 + shift_ + stretch_ * (fit - 0.5), 0.0, 1.0);
+    answer.ratings.push_back(rating_at(scale, is_lapse ? random_share : fit_share));
   }
   condition_.forget();
   return answer;

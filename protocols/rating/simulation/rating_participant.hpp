@@ -1,6 +1,6 @@
-/// \file A simulated participant who rates how well a felt texture fits a picture. The rating is the
-/// higher, the closer the texture is to the expectation from the picture. Source: docs/rating.md,
-/// "Simulated participants".
+/// \file A simulated participant who rates how well a felt texture fits a picture. The rating
+/// decreases with the texture's distance from the expectation that the picture raises. Source:
+/// docs/rating.md, "Simulated participants".
 #pragma once
 
 #include "protocols/rating/study/rating.hpp"
@@ -22,9 +22,9 @@ namespace touchtrial::simulation::rating {
 using Expectations = std::map<std::string, engine::FeltFeatures>;
 
 /// Feels with noise, and rates by the distance from the expectation in standard deviations of that
-/// noise, with an individual use of the scale; in a lapse, gives any rating. A picture without an
-/// expectation, as in practice, is rated in the middle. Subject, study and expectations must
-/// outlive it.
+/// noise, with an individual use of the scale. In a lapse, gives a random rating. Pictures without
+/// an expectation, such as practice pictures, get the middle of the scale. Subject, study and
+/// expectations must outlive it.
 class RatingParticipant final : public SimulatedParticipant {
  public:
   /// \param number  from 1
@@ -32,8 +32,8 @@ class RatingParticipant final : public SimulatedParticipant {
                     const Expectations& expectations, std::uint64_t seed, int number);
 
   void see_pictures(const std::vector<std::string>& /*labels*/) override {}
-  void asked(const session::AnswerStep& step) override { picture_ = step.picture; }
-  void rest() override { condition_.rest(begun()); }
+  void on_question(const session::AnswerStep& step) override { picture_ = step.picture; }
+  void rest() override { condition_.rest(presentations_begun()); }
 
  protected:
   [[nodiscard]] ParticipantAnswer choose(const engine::FeltFeatures& felt,
@@ -52,8 +52,8 @@ class RatingParticipant final : public SimulatedParticipant {
   int number_;
   Individual individual_;
   Condition condition_;
-  double shift_;    ///< of all ratings of this person, as a share of the scale
-  double stretch_;  ///< factor on the differences of the ratings
+  double shift_;    ///< added to all ratings, as a share of the scale
+  double stretch_;  ///< factor on distances from the middle of the scale
   std::string picture_;
 };
 

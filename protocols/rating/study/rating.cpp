@@ -21,9 +21,10 @@
 namespace touchtrial::study::rating {
 namespace {
 
-constexpr const char* kOwnScale = "fit";  ///< the scale that has texts in the language files
+constexpr const char* kDefaultScale = "fit";  ///< the scale that has texts in the language files
 
-void describe_words(ObjectIo& io, std::string_view key, Translated& words, const KeyInfo& about) {
+void describe_translated_text(ObjectIo& io, std::string_view key, Translated& words,
+                              const KeyInfo& about) {
   io.member(key, about, true, [&words](ValueIo& value) { describe_translated(value, words); });
 }
 
@@ -32,16 +33,18 @@ void describe_scale(ObjectIo& io, RatedScale& scale) {
           {.meaning = "a plain name, unique; it names the scale's column in exports",
            .required = true});
   io.rule([&scale](const JsonValue& /*place*/, const JsonObject& object) {
-    if (scale.id == kOwnScale) return;
+    if (scale.id == kDefaultScale) return;
     for (const char* key : {"text", "low", "high"}) static_cast<void>(object.at(key));
   });
-  describe_words(io, "text", scale.text,
-                 {.meaning = "the question, by language, including the study's; for the scale "
-                             "`fit`, question and end labels default to the program's",
-                  .range = "by language"});
-  describe_words(io, "low", scale.low, {.meaning = "label of the low end", .range = "by language"});
-  describe_words(io, "high", scale.high,
-                 {.meaning = "label of the high end", .range = "by language"});
+  describe_translated_text(
+      io, "text", scale.text,
+      {.meaning = "the question, by language, including the study's; for the scale "
+                  "`fit`, question and end labels default to the program's",
+       .range = "by language"});
+  describe_translated_text(io, "low", scale.low,
+                           {.meaning = "label of the low end", .range = "by language"});
+  describe_translated_text(io, "high", scale.high,
+                           {.meaning = "label of the high end", .range = "by language"});
   io.integer("points", scale.points, 0, kMaxPoints,
              {.meaning = "2 to 11: numbers from 1; 0: a line from 0 to 1, in steps of .001",
               .range = "0, 2 to 11"});
@@ -59,8 +62,8 @@ void describe(ObjectIo& io, RatingOptions& options) {
   io.rule([&options](const JsonValue& place, const JsonObject& /*object*/) {
     const std::vector<RatedScale>& scales = options.scales;
     for (std::size_t i = 0; i < scales.size(); ++i) {
-      const auto before = std::span(scales).first(i);
-      if (std::ranges::count(before, scales[i].id, &RatedScale::id) == 0) continue;
+      const auto previous = std::span(scales).first(i);
+      if (std::ranges::count(previous, scales[i].id, &RatedScale::id) == 0) continue;
       place.refuse_below(
           fmt::format("/scales/{}/id", i),
           in_quotes(scales[i].id) + " is the id of another scale; ids must be unique");
@@ -85,19 +88,19 @@ class ImageDeck {
   explicit ImageDeck(std::size_t images) : images_(images) {}
 
   int next(RandomStream& random) {
-    if (left_.empty()) {
-      left_.resize(images_);
-      std::iota(left_.begin(), left_.end(), 0);
-      shuffle(std::span<int>(left_), random);
+    if (remaining_.empty()) {
+      remaining_.resize(images_);
+      std::iota(remaining_.begin(), remaining_.end(), 0);
+      shuffle(std::span<int>(remaining_), random);
     }
-    const int image = left_.back();
-    left_.pop_back();
+    const int image = remaining_.back();
+    remaining_.pop_back();
     return image;
   }
 
  private:
   std::size_t images_;
-  std::vector<int> left_;
+  std::vector<int> remaining_;
 };
 
 Trial rated_trial(int class_index, int block) {
@@ -112,48 +115,47 @@ Trial rated_trial(int class_index, int block) {
 std::vector<Trial> draw_pass(const Study& study, int block, const std::vector<int>& methods,
                              RandomStream& random, std::vector<ImageDeck>& decks) {
   std::vector<Trial> trials;
-  for (int shown = 0; shown < static_cast<int>(study.classes.size()); ++shown) {
+  for (int i = 0; i < static_cast<int>(study.classes.size()); ++i) {
     for (const int method : methods) {
-      Trial& trial = trials.emplace_back(rated_trial(shown, block));
+      Trial& trial = trials.emplace_back(rated_trial(i, block));
       Plane& plane = trial.planes.front();
       plane.field.method = method;
-      plane.field.exemplar = decks[static_cast<std::size_t>(shown)].next(random);
+      plane.field.exemplar = decks[static_cast<std::size_t>(i)].next(random);
       if (study.trials.rove_db == 0.0) continue;
-      plane.gain_db = study.trials.own_gain_db() + draw_rove_db(study.trials.rove_db, random);
+      plane.gain_db = study.trials.centre_gain_db() + draw_rove_db(study.trials.rove_db, random);
     }
   }
   shuffle(std::span<Trial>(trials), random);
   return trials;
 }
 
-/// Draws the passes of a block.
 std::vector<Trial> draw_block(const Study& study, const ScheduleDraw& draw, int block,
                               RandomStream& random, std::vector<ImageDeck>& decks) {
-  const bool by_method = study.trials.blocks == Blocks::by_method;
+  const bool is_by_method = study.trials.blocks == Blocks::by_method;
   std::vector<int> methods = williams_row(study.presented_methods(), draw.method_order);
-  if (by_method) methods = {methods[static_cast<std::size_t>(block)]};
+  if (is_by_method) methods = {methods[static_cast<std::size_t>(block)]};
   std::vector<Trial> trials;
-  for (int pass = 0; pass < (by_method ? study.trials.repeats : 1); ++pass) {
+  for (int pass = 0; pass < (is_by_method ? study.trials.repeats : 1); ++pass) {
     std::ranges::move(draw_pass(study, block, methods, random, decks), std::back_inserter(trials));
   }
   return trials;
 }
 
-/// Adds planes without texture, each with the picture of a random class, at random places except
-/// the first.
+/// Inserts planes without texture at random places except the first, each with the picture of a
+/// random class.
 void add_catch_trials(const Study& study, int count, RandomStream& random,
                       std::vector<Trial>& trials) {
   for (int i = 0; i < count; ++i) {
-    const auto shown = static_cast<int>(random.below(study.classes.size()));
-    const auto at = static_cast<std::ptrdiff_t>(1 + random.below(trials.size()));
-    Trial trial = rated_trial(shown, trials[static_cast<std::size_t>(at - 1)].place.block);
+    const auto picture = static_cast<int>(random.below(study.classes.size()));
+    const auto position = static_cast<std::ptrdiff_t>(1 + random.below(trials.size()));
+    Trial trial = rated_trial(picture, trials[static_cast<std::size_t>(position - 1)].place.block);
     trial.role = Role::catch_trial;
     trial.planes.front() = {.field = {}, .blank = true};
-    trials.insert(trials.begin() + at, std::move(trial));
+    trials.insert(trials.begin() + position, std::move(trial));
   }
 }
 
-void number(std::vector<Trial>& trials, int first) {
+void number_trials(std::vector<Trial>& trials, int first) {
   for (Trial& trial : trials) trial.place.trial = first++;
 }
 
@@ -177,7 +179,7 @@ Schedule draw_schedule(const Study& study, const ScheduleDraw& draw) {
                       std::back_inserter(schedule.trials));
   }
   add_catch_trials(study, study.trials.catch_trials, random, schedule.trials);
-  number(schedule.trials, 1);
+  number_trials(schedule.trials, 1);
   return schedule;
 }
 
@@ -186,7 +188,7 @@ class RatingOrder final : public Order {
   RatingOrder(const Study& study, const ScheduleDraw& draw)
       : Order(draw_schedule(study, draw), draw.secret), study_(study), draw_(draw) {}
 
-  std::vector<Trial> restarted(int block, int restarts_before, int first_trial) const override {
+  std::vector<Trial> redraw_block(int block, int restarts_before, int first_trial) const override {
     if (block < 0 || block >= blocks_of(study_) || restarts_before < 0) {
       throw std::invalid_argument("Order: the schedule has no such block or restart");
     }
@@ -195,11 +197,11 @@ class RatingOrder final : public Order {
                         static_cast<std::uint64_t>(draw_.visit));
     std::vector<ImageDeck> decks = decks_of(study_);
     std::vector<Trial> trials = draw_block(study_, draw_, block, random, decks);
-    const auto caught = std::ranges::count_if(schedule().trials, [block](const Trial& trial) {
+    const auto catches = std::ranges::count_if(schedule().trials, [block](const Trial& trial) {
       return trial.place.block == block && trial.role == Role::catch_trial;
     });
-    add_catch_trials(study_, static_cast<int>(caught), random, trials);
-    number(trials, first_trial);
+    add_catch_trials(study_, static_cast<int>(catches), random, trials);
+    number_trials(trials, first_trial);
     return trials;
   }
 
@@ -215,7 +217,7 @@ class RatingTask final : public Task {
   [[nodiscard]] const RatingOptions& options() const noexcept { return options_; }
 
   void check(const JsonValue& file, const Study& study) const override;
-  std::string in_clear() const override;
+  std::string plaintext_settings() const override;
   std::string rule(const Study& study) const override {
     return fmt::format(
         "touchtrial rating 1: every texture once before any is repeated, shuffled by "
@@ -228,8 +230,8 @@ class RatingTask final : public Task {
     return static_cast<int>(study.classes.size()) * study.presented_methods() *
            study.trials.repeats;
   }
-  Ask ask(const Study& study, const Place& /*place*/) const override {
-    return {.question = Rate{.title = "rate_title", .scales = scales_of(study)}};
+  TrialQuestion ask(const Study& study, const Place& /*place*/) const override {
+    return {.question = RatingQuestion{.title = "rate_title", .scales = scales_of(study)}};
   }
   std::unique_ptr<Order> order(const Study& study, const ScheduleDraw& draw) const override {
     return std::make_unique<RatingOrder>(study, draw);
@@ -245,7 +247,7 @@ void RatingTask::check(const JsonValue& file, const Study& study) const {
   for (std::size_t i = 0; i < options_.scales.size(); ++i) {
     const RatedScale& scale = options_.scales[i];
     const auto require = [&](const char* key, const Translated& words) {
-      if (words.contains(language) || (words.empty() && scale.id == kOwnScale)) return;
+      if (words.contains(language) || (words.empty() && scale.id == kDefaultScale)) return;
       file.refuse_below(fmt::format("/rating/scales/{}/{}/{}", i, key, language),
                         "is missing, but is the study's language; add it");
     };
@@ -275,7 +277,7 @@ void RatingTask::check(const JsonValue& file, const Study& study) const {
   }
 }
 
-std::string RatingTask::in_clear() const {
+std::string RatingTask::plaintext_settings() const {
   RatingOptions copy = options_;
   return written_section([&copy](ObjectIo& io) { describe(io, copy); }, [](ObjectIo& /*io*/) {})
       .dump();
@@ -284,7 +286,7 @@ std::string RatingTask::in_clear() const {
 Practice RatingTask::practice(const Study& study, const ScheduleDraw& draw, int round) const {
   Practice practice = Task::practice(study, draw, round);
   practice.labels.clear();
-  practice.criterion = 0;  // ratings are neither right nor wrong
+  practice.criterion = 0;  // ratings cannot be right or wrong
   for (Trial& trial : practice.trials) {
     trial.right.reset();
     trial.picture = trial.field().class_index;
@@ -302,7 +304,7 @@ Practice RatingTask::practice(const Study& study, const ScheduleDraw& draw, int 
 
 std::shared_ptr<const Task> read_task(const std::optional<JsonValue>& section) {
   RatingOptions options;
-  if (section) read_described(*section, [&](ObjectIo& io) { describe(io, options); });
+  if (section) read_settings(*section, [&](ObjectIo& io) { describe(io, options); });
   return std::make_shared<RatingTask>(std::move(options));
 }
 
@@ -316,14 +318,14 @@ std::vector<Scale> scales_of(const Study& study) {
   const std::string& language = study.session.language;
   std::vector<Scale> scales;
   for (const RatedScale& scale : options_of(study).scales) {
-    const auto words = [&](const Translated& own, const char* key) {
-      if (const auto found = own.find(language); found != own.end()) return found->second;
+    const auto text_in_language = [&](const Translated& text, const char* key) {
+      if (const auto found = text.find(language); found != text.end()) return found->second;
       return texts_of(study.session).at("screens").at(key);
     };
     scales.push_back({.id = scale.id,
-                      .text = words(scale.text, "scale_fit"),
-                      .low = words(scale.low, "scale_fit_low"),
-                      .high = words(scale.high, "scale_fit_high"),
+                      .text = text_in_language(scale.text, "scale_fit"),
+                      .low = text_in_language(scale.low, "scale_fit_low"),
+                      .high = text_in_language(scale.high, "scale_fit_high"),
                       .points = scale.points});
   }
   return scales;

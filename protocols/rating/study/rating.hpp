@@ -1,5 +1,5 @@
-/// \file The protocol "rating": a participant feels a texture, then sees a picture, and rates on one
-/// or several scales how well they fit. Source: docs/rating.md.
+/// \file The protocol "rating": a participant feels a texture, then sees a picture, and rates how
+/// well they fit on one or several scales. Source: docs/rating.md.
 #pragma once
 
 #include "study/protocol.hpp"
@@ -9,11 +9,11 @@
 
 namespace touchtrial::study::rating {
 
-/// A scale of the study file.
+/// A rating scale defined in the study file.
 struct RatedScale {
   std::string id;  ///< a plain name, unique
-  /// \name Texts of the question and of the scale's ends. Those of the scale "fit" may be empty:
-  /// the language file then has them.
+  /// \name Texts of the question and of the scale's ends, by language. For the scale "fit", empty
+  /// texts default to the texts of the language file.
   ///@{
   Translated text;
   Translated low;
@@ -25,7 +25,7 @@ struct RatedScale {
 inline constexpr int kMaxPoints = 11;
 inline constexpr int kMaxScales = 6;
 
-/// The study file's "rating".
+/// The section "rating" of the study file.
 struct RatingOptions {
   std::vector<RatedScale> scales{{.id = "fit", .text = {}, .low = {}, .high = {}}};
   /// Whether practice begins with examples of the scale's ends: a plane without texture, and a
@@ -33,7 +33,7 @@ struct RatingOptions {
   bool anchors = true;
 };
 
-/// \pre the study's protocol is this one
+/// \pre the study's protocol is "rating"
 [[nodiscard]] const RatingOptions& options_of(const Study& study);
 /// The scales in the study's language.
 [[nodiscard]] std::vector<Scale> scales_of(const Study& study);

@@ -11,11 +11,11 @@ namespace touchtrial::analysis::threshold {
 namespace {
 
 std::string kind_word(const TrialOutcome& trial) {
-  if (in_control(trial)) return "control";
+  if (is_control_trial(trial)) return "control";
   return trial.role == study::Role::catch_trial ? "catch" : "track";
 }
 
-/// A trial's choice; empty if it is not one of the study's.
+/// The label of a choice; empty if the choice is not one of the study's.
 DataCell choice_cell(const Outcomes& outcomes, const std::optional<int>& choice) {
   if (!choice || *choice < 0 || static_cast<std::size_t>(*choice) >= outcomes.choices.size()) {
     return std::monostate{};
@@ -23,14 +23,14 @@ DataCell choice_cell(const Outcomes& outcomes, const std::optional<int>& choice)
   return outcomes.choices[static_cast<std::size_t>(*choice)];
 }
 
-/// The standard of a trial's track; nothing for trials without a track.
+/// The standard of a trial; nothing for trials without a track.
 std::optional<study::threshold::Standard> standard_of(const Outcomes& outcomes,
                                                       const TrialOutcome& trial) {
   if (!trial.chosen || trial.chosen->track < 1) return std::nullopt;
-  const auto all = study::threshold::standards_of(outcomes.design);
-  const int each = std::max(study::threshold::options_of(outcomes.design).tracks_each, 1);
-  const auto place = static_cast<std::size_t>((trial.chosen->track - 1) / each);
-  return place < all.size() ? std::optional(all[place]) : std::nullopt;
+  const auto standards = study::threshold::standards_of(outcomes.design);
+  const int tracks_each = std::max(study::threshold::options_of(outcomes.design).tracks_each, 1);
+  const auto index = static_cast<std::size_t>((trial.chosen->track - 1) / tracks_each);
+  return index < standards.size() ? std::optional(standards[index]) : std::nullopt;
 }
 
 DataCell track_cell(const TrialOutcome& trial) {
@@ -43,7 +43,7 @@ DataCell standard_cell(const Outcomes& outcomes, const TrialOutcome& trial) {
   return standard ? DataCell(study::threshold::words_of(outcomes.design, *standard)) : DataCell{};
 }
 
-/// The level of a trial, if it is one of the study's.
+/// The level of a trial; nothing if it is not one of the study's.
 std::optional<double> level_of(const Outcomes& outcomes, const TrialOutcome& trial) {
   const auto& levels = study::threshold::options_of(outcomes.design).track.levels;
   if (!trial.chosen || trial.chosen->level < 0) return std::nullopt;
@@ -51,7 +51,7 @@ std::optional<double> level_of(const Outcomes& outcomes, const TrialOutcome& tri
   return level < levels.size() ? std::optional(levels[level]) : std::nullopt;
 }
 
-/// The comparison of a trial, in the units of the standard.
+/// The quantity of the comparison, in the units of the standard.
 DataCell comparison_cell(const Outcomes& outcomes, const TrialOutcome& trial) {
   const auto standard = standard_of(outcomes, trial);
   const auto level = level_of(outcomes, trial);
@@ -67,7 +67,7 @@ std::vector<DataCell> trial_row(const Outcomes& outcomes, const choices::Person&
           std::int64_t{trial.row.trial},
           track_cell(trial),
           standard_cell(outcomes, trial),
-          or_nothing(level_of(outcomes, trial)),
+          optional_cell(level_of(outcomes, trial)),
           comparison_cell(outcomes, trial),
           choice_cell(outcomes, trial.right),
           choice_cell(outcomes, trial.response),
@@ -82,7 +82,7 @@ const ThresholdOptions& options_of(const Outcomes& outcomes) {
   return study::threshold::options_of(outcomes.design);
 }
 
-/// The rows of tracks.csv that belong to a track, catch trials among them.
+/// The rows of tracks.csv with a track, including catch trials.
 DataTable model_table(const Outcomes& outcomes) {
   DataTable table = track_trials_table(outcomes);
   const auto track = std::ranges::find(table.columns, "track") - table.columns.begin();
@@ -92,34 +92,31 @@ DataTable model_table(const Outcomes& outcomes) {
   return table;
 }
 
-std::string notes_on_model(const Outcomes& outcomes) {
+std::string model_notes(const Outcomes& outcomes) {
   const ThresholdOptions& options = options_of(outcomes);
   const double share = procedures::share_at_threshold(options.track.grid.shape);
   return fmt::format(
-      "`threshold_model.csv` has one row for each answered trial of a "
-      "track, catch trials among them, in sessions that count. `Rscript threshold_model.R` fits "
-      "one "
-      "model to all of them with lme4 and prints thresholds and their differences; with `--csv`, "
-      "all their digits.\n\nThe model (Moscatelli, Mezzetti, Lacquaniti 2012, Journal of Vision "
-      "12(11):26): P(right) = g + (1 - g - l) F(a + b x), with the study's function F ({}), the "
-      "guess "
-      "rate g = {:.4g} and an intercept and a slope for each standard; x is the level, centred by "
-      "standard and scaled. "
-      "Intercepts and slopes differ between participants and, with several standards, again "
-      "between a participant's standards:\n\n    (1 + x | participant) + (1 + x | "
-      "participant:standard)\n\nIf the trials do not determine that (singular, or not converged), "
-      "the same without correlations, then without slopes that differ between a participant's "
-      "standards, then with intercepts alone; never without participants' standards. The script "
-      "says what it fitted.\n\nThe lapse rate l is one for all participants: the likeliest where "
-      "every participant and standard has an intercept of its own, times the density Beta(1, 10). "
-      "Catch trials, at the highest level, tell most of it.\n\nA threshold is the level with "
-      "{:.1f} % right without lapses, as in the report. Intervals are by the delta method, with as "
-      "many degrees of freedom as participants, less one. How they cover: "
-      "docs/procedures-recovery.md. The model takes the levels as given, although an adaptive "
-      "procedure chose them by the answers. The report's thresholds are the ones to quote; this "
-      "model shows whether they depend on fitting each track alone.\n\nColumns: `level_db` ({}), "
-      "`comparison` (the quantity of the comparison), `target` and `response` (of the choices), "
-      "`correct`, `kind` (`track`, or `catch`: not heard by the procedure).\n",
+      "`threshold_model.csv` has one row per answered trial of a track, including catch trials, in "
+      "counted sessions. `Rscript threshold_model.R` fits one model to all of them with lme4 and "
+      "prints thresholds and their differences; with `--csv`, all digits.\n\nThe model "
+      "(Moscatelli, Mezzetti, Lacquaniti 2012, Journal of Vision 12(11):26): P(right) = g + (1 - g "
+      "- l) F(a + b x), with the study's function F ({}), the guess rate g = {:.4g} and an "
+      "intercept and a slope for each standard; x is the level, centred by standard and scaled. "
+      "Intercepts and slopes differ between participants and, with several standards, also between "
+      "a participant's standards:\n\n    (1 + x | participant) + (1 + x | "
+      "participant:standard)\n\nIf the trials do not determine this model (singular, or not "
+      "converged), the same without correlations, then without slopes that differ between a "
+      "participant's standards, then with intercepts only; never without participants' standards. "
+      "The script prints what it fitted.\n\nThe lapse rate l is the same for all participants: the "
+      "maximum of the likelihood, with a separate intercept for every participant and standard, "
+      "times the density Beta(1, 10). It is determined mostly by catch trials, at the highest "
+      "level.\n\nA threshold is the level with {:.1f}% right without lapses, as in the report. "
+      "Intervals are by the delta method, with as many degrees of freedom as participants, minus "
+      "one. Their coverage: docs/procedures-recovery.md. The model treats the levels as given, "
+      "although an adaptive procedure chose them from the answers. Quote the report's thresholds; "
+      "this model shows whether they depend on separate fits to tracks.\n\nColumns: `level_db` "
+      "({}), `comparison` (the quantity of the comparison), `target` and `response` (choices), "
+      "`correct`, `kind` (`track`, or `catch`: not used by the procedure).\n",
       study::threshold::name_of(options.track.grid.shape), options.track.grid.guess,
       100.0 * (options.track.grid.guess + (1.0 - options.track.grid.guess) * share),
       study::threshold::unit_of_level(options));
@@ -132,7 +129,7 @@ std::vector<TrialColumn> threshold_trial_columns() {
           {"standard", true,
            [](const TrialView& trial) { return standard_cell(*trial.study, *trial.outcome); }},
           {"level_db", true, [](const TrialView& trial) {
-             return or_nothing(level_of(*trial.study, *trial.outcome));
+             return optional_cell(level_of(*trial.study, *trial.outcome));
            }}};
 }
 
@@ -153,7 +150,7 @@ RModel threshold_model(const Outcomes& outcomes) {
   if (options.question == study::threshold::Question::same_different) {
     throw UsageError(
         "\"same or different\" has no guess rate, and so no model of thresholds; the report and "
-        "--format csv have its d'");
+        "--format csv contain its d'");
   }
   const std::vector<double>& levels = options.track.levels;
   const double range = std::max(levels.back() - levels.front(), 1.0);
@@ -162,7 +159,7 @@ RModel threshold_model(const Outcomes& outcomes) {
           fmt::format("shape <- \"{}\"\nguess <- {:.17g}\nscale_db <- {:.17g}\n\n{}",
                       study::threshold::name_of(grid.shape), grid.guess, range / 8.0,
                       threshold_model_functions()),
-          notes_on_model(outcomes)};
+          model_notes(outcomes)};
 }
 
 }  // namespace touchtrial::analysis::threshold

@@ -15,9 +15,8 @@
 namespace touchtrial::analysis::threshold {
 namespace {
 
-/// With more, participants have no names below the axis.
+/// The maximum number of participants with names below the axis.
 constexpr std::size_t kMaxNames = 16;
-/// The most tracks that are drawn.
 constexpr std::size_t kMaxTrackPanels = 12;
 
 /// "-21.3 dB (-23.0 to -19.6 dB)"
@@ -28,12 +27,12 @@ std::string decibels_with_interval(const CensoredMean& mean) {
                      mean.interval->high);
 }
 
-/// ", 3 above the levels, 1 below"; empty if everybody's threshold is known.
-std::string beyond_in_words(const StandardReport& one) {
+/// ", 3 above the levels, 1 below the levels"; empty if all thresholds are known.
+std::string censored_words(const StandardReport& standard) {
   std::string text;
-  const auto add = [&](procedures::Censored censored, const char* where) {
-    const int n = one.number_of(censored);
-    if (n > 0) text += fmt::format(", {} {}", n, where);
+  const auto add = [&](procedures::Censored censored, const char* words) {
+    const int n = standard.number_of(censored);
+    if (n > 0) text += fmt::format(", {} {}", n, words);
   };
   add(procedures::Censored::above, "above the levels");
   add(procedures::Censored::below, "below the levels");
@@ -43,15 +42,15 @@ std::string beyond_in_words(const StandardReport& one) {
 
 std::string alt_of_thresholds(const ThresholdReport& report) {
   std::string alt = "Each participant's threshold as a dot, the mean and its 95% interval.";
-  for (const StandardReport& one : report.standards) {
-    if (one.people.empty()) continue;
-    alt += fmt::format(" {}: {} participants{}, {}.", one.words, one.people.size(),
-                       beyond_in_words(one), decibels_with_interval(one.mean));
+  for (const StandardReport& standard : report.standards) {
+    if (standard.people.empty()) continue;
+    alt += fmt::format(" {}: {} participants{}, {}.", standard.words, standard.people.size(),
+                       censored_words(standard), decibels_with_interval(standard.mean));
   }
   return alt;
 }
 
-/// The levels that the first tracks visit.
+/// The levels of the first tracks.
 Axis visited_axis(const ThresholdReport& report, std::size_t tracks) {
   const std::vector<double>& levels = report.options().track.levels;
   std::size_t low = levels.size() - 1;
@@ -67,7 +66,7 @@ Axis visited_axis(const ThresholdReport& report, std::size_t tracks) {
   return {.label = "level, dB", .low = levels[low] - room, .high = levels[high] + room};
 }
 
-/// The intervals of people's thresholds: of those with one track.
+/// The intervals of thresholds by participant; empty for participants with several tracks.
 std::map<std::string, procedures::Threshold> intervals_of(const ThresholdReport& report,
                                                           std::size_t standard) {
   std::map<std::string, procedures::Threshold> intervals;
@@ -80,85 +79,85 @@ std::map<std::string, procedures::Threshold> intervals_of(const ThresholdReport&
   return intervals;
 }
 
-/// Whose value is where, in the order of thresholds: first those below the levels, last those
-/// above.
-std::vector<std::size_t> by_threshold(const StandardReport& standard) {
+/// The determined thresholds' indices in ascending order, from those below to those above the
+/// levels.
+std::vector<std::size_t> order_by_threshold(const StandardReport& standard) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < standard.thresholds.size(); ++i) {
     if (standard.thresholds[i].censored != procedures::Censored::undetermined) order.push_back(i);
   }
   const auto key = [&](std::size_t i) {
-    const PersonThreshold& one = standard.thresholds[i];
-    if (one.censored == procedures::Censored::below) return -HUGE_VAL;
-    return one.censored == procedures::Censored::above ? HUGE_VAL : one.bounds.low;
+    const PersonThreshold& person = standard.thresholds[i];
+    if (person.censored == procedures::Censored::below) return -HUGE_VAL;
+    return person.censored == procedures::Censored::above ? HUGE_VAL : person.bounds.low;
   };
   std::ranges::stable_sort(order, {}, key);
   return order;
 }
 
-/// An interval that is open on one side reaches to that end.
-Datum row_of(double level, const procedures::Threshold& own, const Interval& ends) {
-  if (!own.low && !own.high) return {.y = level, .low = level, .high = level};
-  return {.y = level, .low = own.low.value_or(ends.low), .high = own.high.value_or(ends.high)};
+/// An interval that is open on one side extends to that end.
+Datum row_of(double level, const procedures::Threshold& interval, const Interval& ends) {
+  if (!interval.low && !interval.high) return {.y = level, .low = level, .high = level};
+  return {.y = level,
+          .low = interval.low.value_or(ends.low),
+          .high = interval.high.value_or(ends.high)};
 }
 
-/// From the lowest to the highest of what is drawn, and to the ends where somebody is beyond them.
-Axis seen_axis(const ThresholdReport& report, std::span<const Datum> known, const Interval& ends,
-               bool below, bool above) {
+/// The range of the rows, extended to an end if somebody is beyond it.
+Axis fitted_axis(const ThresholdReport& report, std::span<const Datum> rows, const Interval& ends,
+                 bool has_below, bool has_above) {
   Axis axis{.label = unit_label(report)};
-  if (known.empty()) return {.label = axis.label, .low = ends.low, .high = ends.high};
-  double low = known.front().low;
-  double high = known.front().high;
-  for (const Datum& row : known) {
+  if (rows.empty()) return {.label = axis.label, .low = ends.low, .high = ends.high};
+  double low = rows.front().low;
+  double high = rows.front().high;
+  for (const Datum& row : rows) {
     low = std::min(low, row.low);
     high = std::max(high, row.high);
   }
   const double room = std::max(0.06 * (high - low), 0.5);
-  axis.low = below ? std::min(ends.low, low - room) : low - room;
-  axis.high = above ? std::max(ends.high, high + room) : high + room;
+  axis.low = has_below ? std::min(ends.low, low - room) : low - room;
+  axis.high = has_above ? std::max(ends.high, high + room) : high + room;
   return axis;
 }
 
 Panel thresholds_panel(const ThresholdReport& report, std::size_t number) {
   const StandardReport& standard = report.standards[number];
-  Layer known{.kind = LayerKind::interval, .name = "participants", .colour = series_colour(0)};
-  Layer above{.name = "above the levels",
-              .colour = series_colour(1),
-              .size = 1.3,
-              .glyph = Glyph::triangle,
-              .in_key = true};
-  Layer below{.name = "below the levels",
-              .colour = series_colour(1),
-              .size = 1.3,
-              .glyph = Glyph::down,
-              .in_key = true};
+  Layer determined{.kind = LayerKind::interval, .name = "participants", .colour = series_colour(0)};
+  Layer above_marks{.name = "above the levels",
+                    .colour = series_colour(1),
+                    .size = 1.3,
+                    .glyph = Glyph::triangle,
+                    .in_key = true};
+  Layer below_marks = above_marks;
+  below_marks.name = "below the levels";
+  below_marks.glyph = Glyph::down;
   const double room = room_at_ends(report);
   const auto intervals = intervals_of(report, number);
   const Interval ends{standard.levels.front() - room, standard.levels.back() + room};
   Panel panel;
   panel.x.label = "participants, by threshold";
   double x = 0.0;
-  for (const std::size_t i : by_threshold(standard)) {
+  for (const std::size_t i : order_by_threshold(standard)) {
     x += 1.0;
-    const std::string& who = standard.people[i];
-    const PersonThreshold& one = standard.thresholds[i];
-    panel.x.names.push_back(who);
-    if (one.censored == procedures::Censored::above) {
-      above.rows.push_back({.x = x, .y = standard.levels.back() + 0.5 * room, .text = who});
-    } else if (one.censored == procedures::Censored::below) {
-      below.rows.push_back({.x = x, .y = standard.levels.front() - 0.5 * room, .text = who});
+    const std::string& name = standard.people[i];
+    const PersonThreshold& person = standard.thresholds[i];
+    panel.x.names.push_back(name);
+    if (person.censored == procedures::Censored::above) {
+      above_marks.rows.push_back({.x = x, .y = standard.levels.back() + 0.5 * room, .text = name});
+    } else if (person.censored == procedures::Censored::below) {
+      below_marks.rows.push_back({.x = x, .y = standard.levels.front() - 0.5 * room, .text = name});
     } else {
-      const auto found = intervals.find(who);
-      known.rows.push_back(
-          row_of(one.bounds.low, found == intervals.end() ? procedures::Threshold{} : found->second,
-                 ends));
-      known.rows.back().x = x;
-      known.rows.back().text = who;
+      const auto found = intervals.find(name);
+      determined.rows.push_back(
+          row_of(person.bounds.low,
+                 found == intervals.end() ? procedures::Threshold{} : found->second, ends));
+      determined.rows.back().x = x;
+      determined.rows.back().text = name;
     }
   }
   if (panel.x.names.size() > kMaxNames) {
     panel.x = {.label = panel.x.label, .low = 0.0, .high = x + 1.0};
-    known.size = x > 40.0 ? 0.55 : 0.8;
+    determined.size = x > 40.0 ? 0.55 : 0.8;
   }
   Layer mean{.kind = LayerKind::rule, .name = "mean", .anchor = Anchor::start};
   if (standard.mean.mean) {
@@ -169,10 +168,11 @@ Panel thresholds_panel(const ThresholdReport& report, std::size_t number) {
                   .text = fmt::format("{:.1f}", *standard.mean.mean)}};
     panel.room_right_cm = 0.7;
   }
-  std::vector<Datum> seen = known.rows;
-  if (standard.mean.interval) seen.push_back(mean.rows.front());
-  panel.y = seen_axis(report, seen, ends, !below.rows.empty(), !above.rows.empty());
-  panel.layers = {std::move(mean), std::move(known), std::move(above), std::move(below)};
+  std::vector<Datum> rows = determined.rows;
+  if (standard.mean.interval) rows.push_back(mean.rows.front());
+  panel.y = fitted_axis(report, rows, ends, !below_marks.rows.empty(), !above_marks.rows.empty());
+  panel.layers = {std::move(mean), std::move(determined), std::move(above_marks),
+                  std::move(below_marks)};
   return panel;
 }
 
@@ -211,40 +211,40 @@ std::string alt_of_track(const ThresholdReport& report, const TrackReport& track
 }  // namespace
 
 std::optional<Figure> thresholds_figure(const ThresholdReport& report) {
-  Figure figure = figure_named("thresholds-by-person", "result", report.simulated);
+  Figure figure = empty_figure("thresholds-by-person", "result", report.simulated);
   std::size_t people = 0;
   for (std::size_t i = 0; i < report.standards.size(); ++i) {
     if (report.standards[i].levels.empty() || report.standards[i].thresholds.empty()) continue;
     Panel panel = thresholds_panel(report, i);
     if (report.standards.size() > 1) panel.title = short_name(report.standards[i]);
-    people = std::max(people, by_threshold(report.standards[i]).size());
+    people = std::max(people, order_by_threshold(report.standards[i]).size());
     figure.panels.push_back(std::move(panel));
   }
   if (people == 0) return {};
-  figure.across = std::min<std::size_t>(figure.panels.size(), 3);
+  figure.panels_per_row = std::min<std::size_t>(figure.panels.size(), 3);
   if (figure.panels.size() > 1 || people > 24) figure.width_cm = kPage_cm;
   figure.alt = alt_of_thresholds(report);
   figure.caption = stamped(
       report.simulated,
       "participants' thresholds in ascending order with their 95% intervals, triangles for those "
-      "beyond the levels; line, band and number: the mean of all with its 95% interval.");
+      "beyond the levels; line, band and number: the mean with its 95% interval.");
   return figure;
 }
 
 std::optional<Figure> tracks_figure(const ThresholdReport& report) {
   if (!report.has_thresholds() || report.tracks.empty()) return {};
   const std::size_t count = std::min(report.tracks.size(), kMaxTrackPanels);
-  Figure figure = figure_named("tracks", "tracks-of-participants", report.simulated, kPage_cm);
-  figure.across = 3;
-  figure.alt = "Levels by trial, one panel a track.";
+  Figure figure = empty_figure("tracks", "tracks-of-participants", report.simulated, kPage_cm);
+  figure.panels_per_row = 3;
+  figure.alt = "Levels by trial, one panel per track.";
   for (std::size_t i = 0; i < count; ++i) {
     figure.panels.push_back(track_panel(report, report.tracks[i], visited_axis(report, count)));
     figure.alt += alt_of_track(report, report.tracks[i]);
   }
   figure.caption = stamped(
       report.simulated,
-      "the levels that the procedure chose by trial; dots are right answers, crosses wrong ones, "
-      "and the dashed line is the threshold, if there is one." +
+      "the levels that the procedure chose; dots are right answers, crosses wrong ones, and the "
+      "dashed line is the threshold, if there is one." +
           (count < report.tracks.size()
                ? fmt::format(" The first {} of {} tracks.", count, report.tracks.size())
                : std::string()));
@@ -252,28 +252,28 @@ std::optional<Figure> tracks_figure(const ThresholdReport& report) {
 }
 
 std::optional<Figure> d_prime_figure(const ThresholdReport& report) {
-  Figure figure = figure_named("d-prime-by-level", "same-or-different", report.simulated);
+  Figure figure = empty_figure("d-prime-by-level", "same-or-different", report.simulated);
   figure.alt = "d' of same or different by level, by differencing.";
   for (std::size_t i = 0; i < report.standards.size(); ++i) {
     Layer means{.kind = LayerKind::interval, .name = "d'", .colour = series_colour(0)};
-    for (const SameDifferentGroup& one : report.same_different_groups) {
-      if (one.standard != i || !one.differencing.d_prime) continue;
-      means.rows.push_back(bar(one.level, *one.differencing.d_prime, one.differencing.interval));
-      figure.alt += fmt::format(" {}, {:.1f} dB: {:.2f}.", report.standards[i].words, one.level,
-                                *one.differencing.d_prime);
+    for (const SameDifferentGroup& group : report.same_different_groups) {
+      if (group.standard != i || !group.differencing.d_prime) continue;
+      means.rows.push_back(
+          bar(group.level, *group.differencing.d_prime, group.differencing.interval));
+      figure.alt += fmt::format(" {}, {:.1f} dB: {:.2f}.", report.standards[i].words, group.level,
+                                *group.differencing.d_prime);
     }
     if (means.rows.empty()) continue;
     Panel panel;
     if (report.standards.size() > 1) panel.title = short_name(report.standards[i]);
     panel.x = level_axis(report);
     panel.y = {.label = "d'"};
-    panel.layers = {
-        Layer{.kind = LayerKind::rule, .name = "nothing told apart", .rows = {{.y = 0.0}}},
-        std::move(means)};
+    panel.layers = {Layer{.kind = LayerKind::rule, .name = "chance", .rows = {{.y = 0.0}}},
+                    std::move(means)};
     figure.panels.push_back(std::move(panel));
   }
   if (figure.panels.empty()) return {};
-  figure.across = 2;
+  figure.panels_per_row = 2;
   if (figure.panels.size() > 1) figure.width_cm = kPage_cm;
   figure.caption = stamped(report.simulated,
                            "d' of same or different by level, by differencing: all participants' "

@@ -1,4 +1,4 @@
-/// \file The figures of a threshold study's report.
+/// \file Figures of threshold reports.
 #pragma once
 
 #include "analysis/report/figures/figure.hpp"
@@ -10,18 +10,17 @@
 
 namespace touchtrial::analysis::threshold {
 
-/// The figures that have something to show, in the order of a results section. No figure is drawn
-/// yet.
-/// \param stamp  on every figure besides SIMULATED; may be empty
+/// All figures with data, in the order of a results section, not yet drawn.
+/// \param stamp  on every figure in addition to SIMULATED; may be empty
 [[nodiscard]] std::vector<Figure> report_figures(const ThresholdReport& report,
                                                  const std::string& stamp);
 
-/// Each participant's threshold with its interval, and the mean, one panel a standard.
+/// Each participant's threshold with its interval, and the mean, one panel per standard.
 [[nodiscard]] std::optional<Figure> thresholds_figure(const ThresholdReport& report);
-/// Each participant's function and their mean, one panel a standard; and how many answers were
-/// right of those that the functions expect.
+/// Each participant's function and their mean, one panel per standard; and observed against
+/// expected right answers.
 [[nodiscard]] std::optional<Figure> functions_figure(const ThresholdReport& report);
-/// Levels by trial, right and wrong answers marked; the first tracks of a study with many.
+/// Levels by trial with right and wrong answers; only the first tracks of large studies.
 [[nodiscard]] std::optional<Figure> tracks_figure(const ThresholdReport& report);
 /// d' of same or different by level.
 [[nodiscard]] std::optional<Figure> d_prime_figure(const ThresholdReport& report);

@@ -1,4 +1,4 @@
-/// \file What the methods of a report say of thresholds.
+/// \file Sentences of the methods section for thresholds.
 #pragma once
 
 #include "analysis/report/methods.hpp"
@@ -6,7 +6,6 @@
 
 namespace touchtrial::analysis::threshold {
 
-/// \param report  of these outcomes
 [[nodiscard]] ProtocolMethods protocol_methods(const ThresholdReport& report);
 
 }  // namespace touchtrial::analysis::threshold

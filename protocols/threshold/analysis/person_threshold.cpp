@@ -8,33 +8,33 @@ namespace {
 
 using procedures::Censored;
 
-Censored state_of(std::span<const procedures::ThresholdEstimate> tracks) {
+Censored common_state(std::span<const procedures::ThresholdEstimate> tracks) {
   const Censored first = tracks.front().threshold.censored;
-  const bool alike = std::ranges::all_of(
+  const bool are_equal = std::ranges::all_of(
       tracks, [first](const auto& track) { return track.threshold.censored == first; });
-  return alike ? first : Censored::undetermined;
+  return are_equal ? first : Censored::undetermined;
 }
 
 }  // namespace
 
 Bounds bounds_of(const procedures::ThresholdEstimate& track, std::span<const double> levels) {
   if (const std::optional<double> level = track.threshold.level) return {*level, *level};
-  const double likely = track.observer.threshold;
-  if (likely > levels.back()) return {.low = levels.back()};
-  if (likely < levels.front()) return {.high = levels.front()};
-  return track.attentive.low || track.attentive.high ? Bounds{likely, likely} : Bounds{};
+  const double likeliest = track.observer.threshold;
+  if (likeliest > levels.back()) return {.low = levels.back()};
+  if (likeliest < levels.front()) return {.high = levels.front()};
+  return track.attentive.low || track.attentive.high ? Bounds{likeliest, likeliest} : Bounds{};
 }
 
 PersonThreshold person_threshold(std::span<const procedures::ThresholdEstimate> tracks,
                                  std::span<const double> levels) {
   Bounds sum{0.0, 0.0};
   for (const procedures::ThresholdEstimate& track : tracks) {
-    const Bounds own = bounds_of(track, levels);
-    sum.low += own.low;
-    sum.high += own.high;
+    const Bounds bounds = bounds_of(track, levels);
+    sum.low += bounds.low;
+    sum.high += bounds.high;
   }
   const auto n = static_cast<double>(tracks.size());
-  return {{sum.low / n, sum.high / n}, state_of(tracks)};
+  return {{sum.low / n, sum.high / n}, common_state(tracks)};
 }
 
 PersonThreshold difference_of(const PersonThreshold& first,
@@ -51,7 +51,7 @@ PersonThreshold difference_of(const PersonThreshold& first,
 
 std::vector<Bounds> bounds_of(std::span<const PersonThreshold> people) {
   std::vector<Bounds> bounds;
-  for (const PersonThreshold& one : people) bounds.push_back(one.bounds);
+  for (const PersonThreshold& threshold : people) bounds.push_back(threshold.bounds);
   return bounds;
 }
 
@@ -63,11 +63,11 @@ CensoredMean mean_of(std::span<const PersonThreshold> people, double level) {
   return {.participants = mean.participants,
           .exact = mean.exact,
           .open = mean.open,
-          .lack = Lack::most};
+          .lack = MissingReason::most};
 }
 
 std::optional<double> p_of(std::span<const PersonThreshold> people, double null, Sides sides) {
-  if (mean_of(people).lack == Lack::most) return std::nullopt;
+  if (mean_of(people).lack == MissingReason::most) return std::nullopt;
   return censored_p(bounds_of(people), null, sides);
 }
 

@@ -18,8 +18,8 @@
 namespace touchtrial::analysis::threshold {
 namespace {
 
-using choices::OwnTrials;
 using choices::Person;
+using choices::PersonTrials;
 using choices::Selection;
 using procedures::Censored;
 using study::Estimand;
@@ -27,103 +27,106 @@ using study::Estimand;
 using Tracks = std::vector<TrackReport>;
 
 /// The people of a selection with all required visits, and their trials.
-std::vector<Person> people_in(const Outcomes& outcomes, const Selection& selection) {
+std::vector<Person> selected_people(const Outcomes& outcomes, const Selection& selection) {
   const choices::FirstSessions first(outcomes);
-  const std::set<int> whole = choices::people_with_all_visits(outcomes, selection, first);
+  const std::set<int> complete = choices::people_with_all_visits(outcomes, selection, first);
   std::map<int, Person> people;
   for (const TrialOutcome& trial : outcomes.trials) {
-    const int person = first.of(trial.row.session);
-    if (!is_answer(trial) || !selection.admits(trial)) continue;
-    if (!outcomes.design.enters_analysis(trial.visit) || !whole.contains(person)) continue;
+    const int person = first.first_of(trial.row.session);
+    if (!is_answer(trial) || !selection.includes_any(trial)) continue;
+    if (!outcomes.design.enters_analysis(trial.visit) || !complete.contains(person)) continue;
     people[person].name = trial.participant;
     people[person].trials.push_back(&trial);
   }
   std::vector<Person> all;
   for (auto& [session, person] : people) {
-    choices::sort_as_felt(person.trials);
+    choices::sort_in_felt_order(person.trials);
     all.push_back(std::move(person));
   }
   return all;
 }
 
 /// A cache of tracks by their trials, so that most selections need no new estimates.
-class KnownTracks {
+class TrackCache {
  public:
-  KnownTracks(const Outcomes& outcomes, const ThresholdReport& report) : design_(report.design) {
+  TrackCache(const Outcomes& outcomes, const ThresholdReport& report) : design_(report.design) {
     for (Person& person : people_of(outcomes)) {
-      Tracks& own = known_[std::move(person.trials)];
+      Tracks& tracks = tracks_[std::move(person.trials)];
       for (const TrackReport& track : report.tracks) {
-        if (track.participant == person.name) own.push_back(track);
+        if (track.participant == person.name) tracks.push_back(track);
       }
     }
   }
 
-  void estimate(const std::vector<std::vector<Person>>& choices, int jobs) {
-    std::vector<Person> missing;
-    for (const std::vector<Person>& people : choices) {
+  void estimate(const std::vector<std::vector<Person>>& people_by_selection, int jobs) {
+    std::vector<Person> new_people;
+    for (const std::vector<Person>& people : people_by_selection) {
       for (const Person& person : people) {
-        if (!known_.try_emplace(person.trials).second) continue;
-        missing.push_back({std::to_string(missing.size()), person.trials});
+        if (!tracks_.try_emplace(person.trials).second) continue;
+        new_people.push_back({std::to_string(new_people.size()), person.trials});
       }
     }
-    for (TrackReport& track : track_reports(design_, missing, jobs)) {
-      const Person& person = missing[std::stoul(track.participant)];
-      known_[person.trials].push_back(std::move(track));
+    for (TrackReport& track : track_reports(design_, new_people, jobs)) {
+      const Person& person = new_people[std::stoul(track.participant)];
+      tracks_[person.trials].push_back(std::move(track));
     }
   }
 
-  [[nodiscard]] const Tracks& of(const Person& person) const { return known_.at(person.trials); }
+  [[nodiscard]] const Tracks& tracks_of(const Person& person) const {
+    return tracks_.at(person.trials);
+  }
 
  private:
   const study::Study& design_;
-  std::map<OwnTrials, Tracks> known_;
+  std::map<PersonTrials, Tracks> tracks_;
 };
 
-/// One participant's threshold at a standard.
-std::optional<PersonThreshold> own_threshold(const ThresholdReport& report, const Tracks& tracks,
-                                             std::size_t standard) {
-  std::vector<procedures::ThresholdEstimate> own;
+std::optional<PersonThreshold> threshold_at(const ThresholdReport& report, const Tracks& tracks,
+                                            std::size_t standard) {
+  std::vector<procedures::ThresholdEstimate> estimates;
   for (const TrackReport& track : tracks) {
-    if (track.standard == standard && track.estimate) own.push_back(*track.estimate);
+    if (track.standard == standard && track.estimate) estimates.push_back(*track.estimate);
   }
-  if (own.empty()) return std::nullopt;
-  return person_threshold(own, report.standards[standard].levels);
+  if (estimates.empty()) return std::nullopt;
+  return person_threshold(estimates, report.standards[standard].levels);
 }
 
-/// One participant's thresholds, by the study's standards; nothing without a track.
-using OwnThresholds = std::vector<std::optional<PersonThreshold>>;
+/// One participant's thresholds by standard; nothing without a track.
+using PersonThresholds = std::vector<std::optional<PersonThreshold>>;
 
-/// The people of a selection.
+/// The thresholds of the people of one selection.
 struct Sample {
-  std::vector<OwnThresholds> people;
+  std::vector<PersonThresholds> people;
   int trials = 0;
 
-  /// The thresholds of the people who have one, or both.
-  [[nodiscard]] std::vector<PersonThreshold> of(std::size_t standard) const {
+  [[nodiscard]] std::vector<PersonThreshold> thresholds_at(std::size_t standard) const {
     std::vector<PersonThreshold> all;
-    for (const OwnThresholds& own : people) {
-      if (own[standard]) all.push_back(*own[standard]);
+    for (const PersonThresholds& thresholds : people) {
+      if (thresholds[standard]) all.push_back(*thresholds[standard]);
     }
     return all;
   }
-  [[nodiscard]] std::vector<PersonThreshold> of(std::size_t first, std::size_t second) const {
+  [[nodiscard]] std::vector<PersonThreshold> differences(std::size_t first,
+                                                         std::size_t second) const {
     std::vector<PersonThreshold> all;
-    for (const OwnThresholds& own : people) {
-      if (own[first] && own[second]) all.push_back(difference_of(*own[first], *own[second]));
+    for (const PersonThresholds& thresholds : people) {
+      if (thresholds[first] && thresholds[second]) {
+        all.push_back(difference_of(*thresholds[first], *thresholds[second]));
+      }
     }
     return all;
   }
 };
 
 Sample sample_of(const ThresholdReport& report, const std::vector<Person>& people,
-                 const KnownTracks& known) {
+                 const TrackCache& cache) {
   Sample sample;
   for (const Person& person : people) {
-    const Tracks& tracks = known.of(person);
+    const Tracks& tracks = cache.tracks_of(person);
     if (tracks.empty()) continue;
-    OwnThresholds& own = sample.people.emplace_back(report.standards.size());
-    for (std::size_t i = 0; i < own.size(); ++i) {
-      own[i] = own_threshold(report, tracks, i);
+    PersonThresholds& thresholds = sample.people.emplace_back(report.standards.size());
+    for (std::size_t i = 0; i < thresholds.size(); ++i) {
+      thresholds[i] = threshold_at(report, tracks, i);
     }
     for (const TrackReport& track : tracks) sample.trials += track.answers.n + track.catches.n;
   }
@@ -131,51 +134,52 @@ Sample sample_of(const ThresholdReport& report, const std::vector<Person>& peopl
 }
 
 /// The registered quantity, by indices of standards.
-struct Registered {
+struct RegisteredQuantity {
   Estimand estimand{};
   std::vector<std::size_t> standards;
   Sides sides = Sides::two;
   std::optional<double> margin{};
-  double level = 0.05;  ///< alpha: p must not exceed it
+  double level = 0.05;  ///< the maximum p
 
   [[nodiscard]] double interval_level() const { return 1.0 - (margin ? 2.0 : 1.0) * level; }
 };
 
-std::vector<PersonThreshold> mirrored(std::vector<PersonThreshold> people) {
-  for (PersonThreshold& one : people) one.bounds = {-one.bounds.high, -one.bounds.low};
+std::vector<PersonThreshold> negated(std::vector<PersonThreshold> people) {
+  for (PersonThreshold& threshold : people)
+    threshold.bounds = {-threshold.bounds.high, -threshold.bounds.low};
   return people;
 }
 
-/// The larger p of the two tests that the mean lies above -margin and below margin.
+/// The larger p of the two one-sided tests against -margin and margin.
 std::optional<double> equality_p(const std::vector<PersonThreshold>& people, double margin) {
   const auto above = p_of(people, -margin, Sides::one);
-  const auto below = p_of(mirrored(people), -margin, Sides::one);
+  const auto below = p_of(negated(people), -margin, Sides::one);
   if (!above || !below) return std::nullopt;
   return std::max(*above, *below);
 }
 
 std::string pair_words(const ThresholdReport& report, std::size_t first, std::size_t second) {
-  return fmt::format("{}, less {}", report.standards[first].words, report.standards[second].words);
+  return fmt::format("{}, minus {}", report.standards[first].words, report.standards[second].words);
 }
 
-std::vector<PrimaryPair> pairs_of(const ThresholdReport& report, const Registered& question,
+std::vector<PrimaryPair> pairs_of(const ThresholdReport& report, const RegisteredQuantity& question,
                                   const Sample& sample) {
   std::vector<PrimaryPair> pairs;
   for (std::size_t i = 0; i < question.standards.size(); ++i) {
     for (std::size_t j = i + 1; j < question.standards.size(); ++j) {
       const std::size_t first = question.standards[i];
       const std::size_t second = question.standards[j];
-      const std::vector<PersonThreshold> people = sample.of(first, second);
-      const CensoredMean found = mean_of(people, question.interval_level());
-      pairs.push_back({pair_words(report, first, second), found.participants, found.mean,
-                       found.interval, equality_p(people, *question.margin)});
+      const std::vector<PersonThreshold> people = sample.differences(first, second);
+      const CensoredMean mean = mean_of(people, question.interval_level());
+      pairs.push_back({pair_words(report, first, second), mean.participants, mean.mean,
+                       mean.interval, equality_p(people, *question.margin)});
     }
   }
   return pairs;
 }
 
-/// The deciding pair: one without an interval, else the one whose interval extends furthest from 0.
-const PrimaryPair& furthest(const std::vector<PrimaryPair>& pairs) {
+/// The deciding pair: one without an interval, or the one whose interval extends furthest from 0.
+const PrimaryPair& deciding_pair(const std::vector<PrimaryPair>& pairs) {
   const auto reach = [](const PrimaryPair& pair) {
     if (!pair.interval) return std::numeric_limits<double>::infinity();
     return std::max(std::abs(pair.interval->low), std::abs(pair.interval->high));
@@ -183,35 +187,36 @@ const PrimaryPair& furthest(const std::vector<PrimaryPair>& pairs) {
   return *std::ranges::max_element(pairs, {}, reach);
 }
 
-/// The people over whom the question's mean is taken, or their differences.
-std::vector<PersonThreshold> people_asked(const Registered& question, const Sample& sample) {
-  const std::vector<std::size_t>& of = question.standards;
-  return question.estimand == Estimand::mean_threshold ? sample.of(of.front())
-                                                       : sample.of(of[0], of[1]);
+/// The thresholds, or differences, whose mean answers the question.
+std::vector<PersonThreshold> values_of(const RegisteredQuantity& question, const Sample& sample) {
+  const std::vector<std::size_t>& standards = question.standards;
+  return question.estimand == Estimand::mean_threshold
+             ? sample.thresholds_at(standards[0])
+             : sample.differences(standards[0], standards[1]);
 }
 
-PrimaryChoice choice_of(const ThresholdReport& report, const Registered& question,
+PrimaryChoice choice_of(const ThresholdReport& report, const RegisteredQuantity& question,
                         const Selection& selection, const Sample& sample) {
   PrimaryChoice choice{selection.name, selection.words, static_cast<int>(sample.people.size()),
                        sample.trials};
   if (question.estimand == Estimand::threshold_equality) {
     const std::vector<PrimaryPair> pairs = pairs_of(report, question, sample);
-    const PrimaryPair& pair = furthest(pairs);
+    const PrimaryPair& pair = deciding_pair(pairs);
     choice.estimate = pair.estimate;
     choice.interval = pair.interval;
     choice.pair = pair.words;
     return choice;
   }
-  const CensoredMean found = mean_of(people_asked(question, sample), question.interval_level());
-  choice.participants = found.participants;
-  choice.estimate = found.mean;
-  choice.interval = found.interval;
+  const CensoredMean mean = mean_of(values_of(question, sample), question.interval_level());
+  choice.participants = mean.participants;
+  choice.estimate = mean.mean;
+  choice.interval = mean.interval;
   return choice;
 }
 
-/// Adds the results that exist only for the registered selection.
-void put_registered_choice(const ThresholdReport& report, const Registered& question,
-                           const Sample& sample, PrimaryResult& result) {
+/// Adds the results that only the registered selection has.
+void add_registered_results(const ThresholdReport& report, const RegisteredQuantity& question,
+                            const Sample& sample, PrimaryResult& result) {
   if (question.estimand == Estimand::mean_threshold) return;
   if (question.estimand == Estimand::threshold_equality) {
     result.pairs = pairs_of(report, question, sample);
@@ -222,67 +227,68 @@ void put_registered_choice(const ThresholdReport& report, const Registered& ques
     }
     return;
   }
-  const std::vector<PersonThreshold> people = people_asked(question, sample);
+  const std::vector<PersonThreshold> people = values_of(question, sample);
   result.p = p_of(people, 0.0, question.sides);
   result.statistic = known_t_statistic(bounds_of(people));
   if (question.sides == Sides::two || question.level >= 0.5) return;
-  const CensoredMean found = mean_of(people, 1.0 - 2.0 * question.level);
-  if (found.interval) result.bound = found.interval->low;
+  const CensoredMean mean = mean_of(people, 1.0 - 2.0 * question.level);
+  if (mean.interval) result.bound = mean.interval->low;
 }
 
-/// How people without a threshold enter the mean, after who they are: "1 of 6 at bark".
-std::string words_on_unknown(const std::vector<std::string>& who, int open) {
+/// How people without a threshold enter the mean.
+/// \param counts  "1 of 6 at bark"
+std::string unknown_words(const std::vector<std::string>& counts, int open) {
   std::string text = fmt::format(
-      "Without a threshold: {}. The mean takes each of them by the likeliest threshold if that "
-      "lies inside the levels, else by the side on which it lies.",
-      fmt::join(who, "; "));
+      "Without a threshold: {}. They enter the mean by the likeliest threshold if that is within "
+      "the levels, else as censored.",
+      fmt::join(counts, "; "));
   if (open > 0) {
-    text += fmt::format(" {} {} no share in it: the answers leave both ends open.",
-                        counted(open, "threshold"), open == 1 ? "has" : "have");
+    text += fmt::format(" {} {} not enter it, because the answers leave both ends open.",
+                        counted(open, "threshold"), open == 1 ? "does" : "do");
   }
   return text;
 }
 
-/// Adds the number of people without a threshold at the registered standards, and whether it is too
-/// large for a mean, or for that of a difference.
-void put_unknown(const ThresholdReport& report, const Registered& question, const Sample& sample,
-                 PrimaryResult& result) {
-  std::vector<std::string> some;
-  std::vector<std::string> most;
+/// Notes the number of people without a threshold at the registered standards, and whether it is
+/// too large for a mean of thresholds or differences.
+void note_unknown(const ThresholdReport& report, const RegisteredQuantity& question,
+                  const Sample& sample, PrimaryResult& result) {
+  std::vector<std::string> noted;
+  std::vector<std::string> too_many;
   int open = 0;
-  const auto add = [&](const std::vector<PersonThreshold>& people, const std::string& of,
+  const auto add = [&](const std::vector<PersonThreshold>& people, const std::string& place,
                        bool is_noted) {
-    const auto known = std::ranges::count(people, Censored::no, &PersonThreshold::censored);
+    const auto known_count = std::ranges::count(people, Censored::no, &PersonThreshold::censored);
     const std::string words =
-        fmt::format("{} of {} at {}", people.size() - known, people.size(), of);
+        fmt::format("{} of {} at {}", people.size() - known_count, people.size(), place);
     const CensoredMean mean = mean_of(people);
-    if (mean.lack == Lack::most) most.push_back(words);
-    if (!is_noted || known == std::ssize(people)) return;
-    some.push_back(words);
+    if (mean.lack == MissingReason::most) too_many.push_back(words);
+    if (!is_noted || known_count == std::ssize(people)) return;
+    noted.push_back(words);
     open += mean.open;
   };
   for (const std::size_t standard : question.standards) {
-    add(sample.of(standard), report.standards[standard].words, true);
+    add(sample.thresholds_at(standard), report.standards[standard].words, true);
   }
-  if (most.empty()) {
+  if (too_many.empty()) {
     for (std::size_t i = 0; i < question.standards.size(); ++i) {
       for (std::size_t j = i + 1; j < question.standards.size(); ++j) {
         const std::size_t first = question.standards[i];
         const std::size_t second = question.standards[j];
-        add(sample.of(first, second), pair_words(report, first, second), false);
+        add(sample.differences(first, second), pair_words(report, first, second), false);
       }
     }
   }
-  if (!most.empty()) {
-    result.nothing_follows = fmt::format(
-        "More than half of the participants have no threshold ({}), so nothing follows.",
-        fmt::join(most, "; "));
-  } else if (!some.empty()) {
-    result.note = words_on_unknown(some, open);
+  if (!too_many.empty()) {
+    result.obstacle = fmt::format(
+        "More than half of the participants have no threshold ({}), so no conclusion is possible.",
+        fmt::join(too_many, "; "));
+  } else if (!noted.empty()) {
+    result.note = unknown_words(noted, open);
   }
 }
 
-std::string question_words(const ThresholdReport& report, const Registered& question) {
+std::string question_words(const ThresholdReport& report, const RegisteredQuantity& question) {
   const auto words = [&](std::size_t nth) {
     return report.standards[question.standards[nth]].words;
   };
@@ -296,11 +302,11 @@ std::string question_words(const ThresholdReport& report, const Registered& ques
     default:
       break;
   }
-  return fmt::format("of {} differences of thresholds, the one that reaches furthest from 0{}",
+  return fmt::format("the largest of {} differences of thresholds{}",
                      question.standards.size() * (question.standards.size() - 1) / 2, visits);
 }
 
-std::string test_words(const Registered& question) {
+std::string test_words(const RegisteredQuantity& question) {
   if (question.estimand == Estimand::mean_threshold) return "none";
   if (question.estimand == Estimand::threshold_equality) {
     return "two one-sided t tests over participants of every difference";
@@ -309,14 +315,14 @@ std::string test_words(const Registered& question) {
                      question.sides == Sides::one ? "one-sided" : "two-sided");
 }
 
-double null_of(const Registered& question) {
+double null_of(const RegisteredQuantity& question) {
   if (question.estimand == Estimand::mean_threshold) {
     return std::numeric_limits<double>::quiet_NaN();
   }
   return question.margin.value_or(0.0);
 }
 
-Registered registered_question(const study::Study& study) {
+RegisteredQuantity registered_question(const study::Study& study) {
   const study::RegisteredAnalysis& registered = *study.registration.analysis;
   return {registered.estimand, study::threshold::registered_standards(study),
           registered.one_sided ? Sides::one : Sides::two, registered.margin, registered.alpha};
@@ -328,7 +334,7 @@ std::optional<PrimaryResult> primary_result(const Outcomes& outcomes, const Thre
                                             int jobs) {
   const auto& registered = outcomes.design.registration.analysis;
   if (!registered) return std::nullopt;
-  Registered question = registered_question(outcomes.design);
+  RegisteredQuantity question = registered_question(outcomes.design);
   PrimaryResult result{.estimand = question.estimand,
                        .words = question_words(report, question),
                        .test = test_words(question),
@@ -339,27 +345,28 @@ std::optional<PrimaryResult> primary_result(const Outcomes& outcomes, const Thre
                        .interval_level = question.interval_level(),
                        .smallest_effect = registered->smallest_effect,
                        .margin = question.margin};
-  std::vector<Selection> chosen = choices::selections(outcomes);
+  std::vector<Selection> selections = choices::selections(outcomes);
   // A trial without an answer belongs to no track.
-  std::erase_if(chosen, [](const Selection& one) { return one.only_answered; });
+  std::erase_if(selections, [](const Selection& selection) { return selection.only_answered; });
   std::vector<std::vector<Person>> people;
-  for (const Selection& selection : chosen) people.push_back(people_in(outcomes, selection));
-  KnownTracks known(outcomes, report);
-  known.estimate(people, jobs);
+  for (const Selection& selection : selections)
+    people.push_back(selected_people(outcomes, selection));
+  TrackCache cache(outcomes, report);
+  cache.estimate(people, jobs);
   std::vector<Sample> samples;
-  for (const std::vector<Person>& one : people) samples.push_back(sample_of(report, one, known));
-  const Sample& of_registered = samples.front();
-  const StudyCourse course = course_of(outcomes, static_cast<int>(of_registered.people.size()));
+  for (const auto& group : people) samples.push_back(sample_of(report, group, cache));
+  const Sample& registered_sample = samples.front();
+  const StudyCourse course = course_of(outcomes, static_cast<int>(registered_sample.people.size()));
   // With registered looks, intervals have the level of the test.
   question.level = level_of(result, course, registered->spending);
   result.level = question.level;
   result.interval_level = question.interval_level();
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    result.choices.push_back(choice_of(report, question, chosen[i], samples[i]));
+  for (std::size_t i = 0; i < selections.size(); ++i) {
+    result.choices.push_back(choice_of(report, question, selections[i], samples[i]));
   }
-  put_registered_choice(report, question, of_registered, result);
-  put_unknown(report, question, of_registered, result);
-  judge(result, course);
+  add_registered_results(report, question, registered_sample, result);
+  note_unknown(report, question, registered_sample, result);
+  set_verdict(result, course);
   return result;
 }
 

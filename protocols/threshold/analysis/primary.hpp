@@ -1,6 +1,6 @@
-/// \file The registered question about thresholds: a mean, the difference of two standards, or their
-/// equality. Source: docs/statistics.md, "The registered question"; docs/thresholds.md, "The
-/// registered question".
+/// \file The registered question about thresholds: a mean, the difference of two standards, or the
+/// equality of standards. Source: docs/statistics.md and docs/thresholds.md, "The registered
+/// question".
 #pragma once
 
 #include "analysis/report/registered.hpp"
@@ -10,8 +10,8 @@
 
 namespace touchtrial::analysis::threshold {
 
-/// The answer under every selection of sessions and trials, with its decision.
-/// \param report  its tracks and standards
+/// The answer for every selection of sessions and trials, with the decision.
+/// \param report  with tracks and standards
 /// \param jobs  threads for tracks that are not in the report; 0: one for each core
 /// \return nothing if the study registers no question
 [[nodiscard]] std::optional<PrimaryResult> primary_result(const Outcomes& outcomes,

@@ -5,8 +5,6 @@
 #include "protocols/threshold/analysis/primary.hpp"
 
 #include <algorithm>
-#include <map>
-#include <utility>
 
 namespace touchtrial::analysis::threshold {
 namespace {
@@ -14,16 +12,16 @@ namespace {
 using choices::Person;
 using study::threshold::Question;
 
-/// Trials of tracks in sessions that count, which the participant did not answer.
-int tracks_trials_without_answer(const Outcomes& outcomes) {
+/// Unanswered trials of tracks in counted sessions.
+int trials_without_answer(const Outcomes& outcomes) {
   int n = 0;
   for (const TrialOutcome& trial : outcomes.trials) {
-    n += trial.counted && in_track(trial) && !trial.response ? 1 : 0;
+    n += trial.counted && is_track_trial(trial) && !trial.response ? 1 : 0;
   }
   return n;
 }
 
-ThresholdReport begun_report(const Outcomes& outcomes) {
+ThresholdReport initial_report(const Outcomes& outcomes) {
   ThresholdReport report;
   static_cast<StudyHead&>(report) = head_of(outcomes);
   report.design = outcomes.design;
@@ -35,40 +33,16 @@ ThresholdReport begun_report(const Outcomes& outcomes) {
   if (options.question != Question::same_different) {
     report.criterion = grid.guess + (1.0 - grid.guess) * procedures::share_at_threshold(grid.shape);
   }
-  report.without_answer = tracks_trials_without_answer(outcomes);
+  report.without_answer = trials_without_answer(outcomes);
   return report;
 }
 
-/// The mean of the levels of each participant, in the order in which they first appear.
-class MeanOfEach {
- public:
-  void add(const std::string& participant, double value) {
-    const auto [found, is_new] = place_.emplace(participant, people.size());
-    if (is_new) {
-      people.push_back(participant);
-      sums_.push_back({0.0, 0});
-    }
-    sums_[found->second].first += value;
-    ++sums_[found->second].second;
-  }
-  [[nodiscard]] std::vector<double> means() const {
-    std::vector<double> all;
-    for (const auto& [sum, n] : sums_) all.push_back(sum / n);
-    return all;
-  }
-  std::vector<std::string> people;
-
- private:
-  std::map<std::string, std::size_t> place_;
-  std::vector<std::pair<double, int>> sums_;
-};
-
 StandardReport standard_report(const ThresholdReport& report, std::size_t standard,
-                               const study::threshold::Standard& of) {
+                               const study::threshold::Standard& definition) {
   StandardReport result;
-  result.of = of;
-  result.words = study::threshold::words_of(report.design, of);
-  result.levels = study::threshold::levels_of(report.options(), of);
+  result.definition = definition;
+  result.words = study::threshold::words_of(report.design, definition);
+  result.levels = study::threshold::levels_of(report.options(), definition);
   std::vector<std::vector<procedures::ThresholdEstimate>> tracks;
   for (const TrackReport& track : report.tracks) {
     if (track.standard != standard) continue;
@@ -80,8 +54,8 @@ StandardReport standard_report(const ThresholdReport& report, std::size_t standa
     }
     tracks.back().push_back(*track.estimate);
   }
-  for (const auto& own : tracks) {
-    result.thresholds.push_back(person_threshold(own, result.levels));
+  for (const auto& person_tracks : tracks) {
+    result.thresholds.push_back(person_threshold(person_tracks, result.levels));
   }
   result.mean = mean_of(result.thresholds);
   return result;
@@ -91,9 +65,9 @@ std::vector<PersonThreshold> paired_differences(const StandardReport& first,
                                                 const StandardReport& second) {
   std::vector<PersonThreshold> differences;
   for (std::size_t i = 0; i < first.people.size(); ++i) {
-    const auto other = std::ranges::find(second.people, first.people[i]);
-    if (other == second.people.end()) continue;
-    const auto place = static_cast<std::size_t>(other - second.people.begin());
+    const auto match = std::ranges::find(second.people, first.people[i]);
+    if (match == second.people.end()) continue;
+    const auto place = static_cast<std::size_t>(match - second.people.begin());
     differences.push_back(difference_of(first.thresholds[i], second.thresholds[place]));
   }
   return differences;
@@ -101,8 +75,8 @@ std::vector<PersonThreshold> paired_differences(const StandardReport& first,
 
 std::vector<StandardReport> standard_reports(const ThresholdReport& report) {
   std::vector<StandardReport> all;
-  for (const study::threshold::Standard& of : study::threshold::standards_of(report.design)) {
-    all.push_back(standard_report(report, all.size(), of));
+  for (const study::threshold::Standard& standard : study::threshold::standards_of(report.design)) {
+    all.push_back(standard_report(report, all.size(), standard));
   }
   return all;
 }
@@ -114,36 +88,44 @@ std::vector<DifferenceReport> difference_reports(std::span<const StandardReport>
     for (std::size_t j = i + 1; j < standards.size(); ++j) {
       const std::vector<PersonThreshold> differences =
           paired_differences(standards[i], standards[j]);
-      DifferenceReport& one = all.emplace_back();
-      one.first = i;
-      one.second = j;
-      one.difference = mean_of(differences);
-      one.known = static_cast<int>(
+      DifferenceReport& pair = all.emplace_back();
+      pair.first = i;
+      pair.second = j;
+      pair.difference = mean_of(differences);
+      pair.known = static_cast<int>(
           std::ranges::count(differences, procedures::Censored::no, &PersonThreshold::censored));
-      one.p = p_of(differences, 0.0, Sides::two);
-      one.statistic = known_t_statistic(bounds_of(differences));
-      if (one.p) p.push_back(*one.p);
+      pair.p = p_of(differences, 0.0, Sides::two);
+      pair.statistic = known_t_statistic(bounds_of(differences));
+      if (pair.p) p.push_back(*pair.p);
     }
   }
   const std::vector<double> adjusted = holm_adjusted(p);
   auto next = adjusted.begin();
-  for (DifferenceReport& one : all) {
-    if (one.p) one.p_holm = *next++;
+  for (DifferenceReport& pair : all) {
+    if (pair.p) pair.p_holm = *next++;
   }
   return all;
 }
 
 GroupTest group_learning(const ThresholdReport& report) {
-  MeanOfEach each;
-  for (const TrackReport& track : report.tracks) {
-    if (track.learning_db) each.add(track.participant, *track.learning_db);
+  std::vector<double> means;
+  for (auto track = report.tracks.begin(); track != report.tracks.end();) {
+    const std::string& participant = track->participant;
+    double sum = 0.0;
+    int n = 0;
+    for (; track != report.tracks.end() && track->participant == participant; ++track) {
+      if (!track->learning_db) continue;
+      sum += *track->learning_db;
+      ++n;
+    }
+    if (n > 0) means.push_back(sum / n);
   }
-  return choices::group_test(each.means());
+  return choices::group_test(means);
 }
 
 }  // namespace
 
-bool in_track(const TrialOutcome& trial) noexcept {
+bool is_track_trial(const TrialOutcome& trial) noexcept {
   return trial.role == study::Role::scored && trial.chosen && trial.chosen->track > 0;
 }
 
@@ -151,7 +133,7 @@ bool is_catch(const TrialOutcome& trial) noexcept {
   return trial.role == study::Role::catch_trial && trial.chosen && trial.chosen->track > 0;
 }
 
-bool in_control(const TrialOutcome& trial) noexcept {
+bool is_control_trial(const TrialOutcome& trial) noexcept {
   return trial.role == study::Role::control;
 }
 
@@ -161,27 +143,27 @@ bool is_answer(const TrialOutcome& trial) noexcept {
 }
 
 std::vector<Person> people_of(const Outcomes& outcomes) {
-  std::vector<Person> people = choices::people_with(outcomes, is_answer);
-  for (Person& person : people) choices::sort_as_felt(person.trials);
+  std::vector<Person> people = choices::people_with_trials(outcomes, is_answer);
+  for (Person& person : people) choices::sort_in_felt_order(person.trials);
   return people;
 }
 
 ThresholdReport make_report(const Outcomes& outcomes, int jobs) {
-  ThresholdReport report = begun_report(outcomes);
+  ThresholdReport report = initial_report(outcomes);
   const std::vector<Person> people = people_of(outcomes);
   report.tracks = track_reports(report.design, people, jobs);
   report.standards = standard_reports(report);
   report.differences = difference_reports(report.standards);
   report.control = sound_report(people, report.guess, report.standards);
-  report.catches = choices::against_guessing(people, report.guess, is_catch);
+  report.catches = choices::test_against_guessing(people, report.guess, is_catch);
   if (report.catches) report.attention = choices::attention_of(*report.catches);
-  report.choice_use = choices::choice_use_of(people, report.choices, in_track);
+  report.choice_use = choices::choice_use_of(people, report.choices, is_track_trial);
   if (report.options().question != Question::same_different) {
-    report.preferences =
-        choices::preferences_by_target(people, static_cast<int>(report.choices.size()), in_track);
+    report.preferences = choices::preferences_by_target(
+        people, static_cast<int>(report.choices.size()), is_track_trial);
   }
-  report.after_right = choices::repetition_of(people, true, in_track);
-  report.after_wrong = choices::repetition_of(people, false, in_track);
+  report.after_right = choices::repetition_of(people, true, is_track_trial);
+  report.after_wrong = choices::repetition_of(people, false, is_track_trial);
   report.learning_db = group_learning(report);
   report.same_different = same_different_levels(report.design, people);
   report.same_different_groups = same_different_groups(report.same_different);

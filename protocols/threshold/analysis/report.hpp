@@ -1,6 +1,6 @@
-/// \file The numbers of a threshold study, from the outcomes that count. A trial without an answer
-/// belongs to no track: the procedure did not hear of it. Source: docs/thresholds.md, "What the
-/// report says".
+/// \file The numbers of a threshold study, from counted outcomes. A trial without an answer belongs to
+/// no track, because the procedure ignores it. Source: docs/thresholds.md, "What the report
+/// contains".
 #pragma once
 
 #include "analysis/choices/answers.hpp"
@@ -24,13 +24,13 @@
 
 namespace touchtrial::analysis::threshold {
 
-using choices::AgainstGuessing;
 using choices::ChoiceUse;
 using choices::GroupTest;
+using choices::GuessingTests;
 using choices::Repetition;
 using choices::RightAnswers;
 
-/// A threshold in the quantity that a reader knows.
+/// A threshold in a familiar quantity, such as a Weber fraction.
 struct Quantity {
   std::optional<double> value{};
   std::optional<double> low{};
@@ -41,70 +41,69 @@ struct TrackReport {
   std::string participant;
   int track = 0;                               ///< from 1
   std::size_t standard = 0;                    ///< index into ThresholdReport::standards
-  std::vector<procedures::TrackTrial> trials;  ///< that the procedure chose, as they were felt
-  Proportion answers;                          ///< in these
-  Proportion catches;                          ///< at the highest level, without the procedure
-  /// Of both; nothing for same or different.
+  std::vector<procedures::TrackTrial> trials;  ///< of the procedure, in felt order
+  Proportion answers;                          ///< in `trials`
+  Proportion catches;                          ///< in catch trials, at the highest level
+  /// The threshold from answers and catches; nothing for same or different.
   std::optional<procedures::ThresholdEstimate> estimate{};
   std::optional<procedures::Threshold> reversals{};  ///< of a staircase
   std::optional<procedures::GoodnessOfFit> fit{};    ///< with constant stimuli
-  /// The change of the threshold from the first to the last trial, in dB. Below 0: the participant
-  /// became better. Nothing for a track without a threshold, and for one that tells too little.
+  /// The change of the threshold from the first to the last trial, in dB; negative: improvement.
+  /// Nothing for a track without a threshold or with too little information.
   std::optional<double> learning_db{};
 
-  /// Nothing: the answers tell no number.
   [[nodiscard]] std::optional<double> threshold() const {
     return estimate ? estimate->threshold.level : std::nullopt;
   }
 };
 
-/// One class and standard: what the thresholds of all participants with a track have in common.
+/// The thresholds of all participants at one class and standard.
 struct StandardReport {
-  study::threshold::Standard of;
+  study::threshold::Standard definition;
   std::string words;                        ///< study::threshold::words_of
   std::vector<double> levels;               ///< of its tracks
   int tracks = 0;                           ///< with a trial
-  std::vector<std::string> people;          ///< those with a track
-  std::vector<PersonThreshold> thresholds;  ///< theirs
+  std::vector<std::string> people;          ///< with a track
+  std::vector<PersonThreshold> thresholds;  ///< of `people`
   CensoredMean mean;                        ///< in units of the level
 
-  /// How many of `people` are censored so, or (no) have tracks with a number.
+  /// The number of `people` with this state; Censored::no: with a known threshold.
   [[nodiscard]] int number_of(procedures::Censored censored) const;
 };
 
-/// The thresholds of two standards, first minus second, of participants with a track of both.
+/// The thresholds of two standards, first minus second, of participants with tracks of both.
 struct DifferenceReport {
   std::size_t first = 0;  ///< indices into ThresholdReport::standards
   std::size_t second = 1;
   CensoredMean difference;
-  int known = 0;                          ///< people both of whose thresholds are known
+  int known = 0;                          ///< people with two known thresholds
   std::optional<double> p{};              ///< two-sided
   std::optional<double> p_holm{};         ///< over all pairs
   std::optional<TStatistic> statistic{};  ///< if every difference is known
 };
 
 /// d' of "same" or "different" at one level. Hits are of the level, false alarms of all trials of
-/// the standard with two alike: the participant has one criterion for all.
+/// the standard with equal planes, because participants use one criterion.
 struct SameDifferentLevel {
   std::string participant;  ///< empty: all pooled
   std::size_t standard = 0;
   double level = 0.0;
-  Proportion different;    ///< hits: "different" where they differ
-  Proportion same;         ///< false alarms: "different" where they are alike, at this level
-  Proportion same_at_all;  ///< false alarms at all levels
+  Proportion different;           ///< hits: "different" for different planes
+  Proportion same;                ///< false alarms: "different" for equal planes, at this level
+  Proportion same_at_all_levels;  ///< false alarms at all levels
   std::optional<double> d_differencing{};  ///< 0 with fewer hits than false alarms
   std::optional<double> d_independent{};
 };
 
 struct PooledDPrime {
   std::optional<double> d_prime{};
-  /// Bootstrap over participants; nothing with fewer than kMinForBootstrap.
+  /// Bootstrap over participants; nothing with fewer than kMinBootstrapParticipants.
   std::optional<Interval> interval{};
 };
 
-/// d' of all participants' answers at one level. Their own d' have no mean: d' grows as the root of
-/// hits less false alarms, so that the mean of a weak d' is far too small with any number of trials
-/// that a session has.
+/// d' of all participants' answers at one level. There is no mean of participants' d': d' grows as
+/// the root of hits minus false alarms, so the mean of small d' is far too small with realistic
+/// numbers of trials.
 struct SameDifferentGroup {
   std::size_t standard = 0;
   double level = 0.0;
@@ -113,30 +112,29 @@ struct SameDifferentGroup {
   PooledDPrime independent;
 };
 
-/// The control block with the hand off the device.
-struct SoundReport : AgainstGuessing {
-  choices::GlobalNullResult anybody;  ///< whether anybody could hear it
-  choices::Detectable detectable;     ///< what so few trials could have shown
-  std::vector<std::string> hearers;   ///< whose own p is within the level, if anybody could
-  std::vector<CensoredMean> without;  ///< means of standards without the hearers, if there are some
+/// Answers in the control block, with the hand off the device.
+struct SoundReport : GuessingTests {
+  choices::GlobalNullResult global_null;      ///< whether anybody is above chance
+  choices::DetectableAccuracy detectable;     ///< with these numbers of trials
+  std::vector<std::string> hearers;           ///< people_above_chance
+  std::vector<CensoredMean> without_hearers;  ///< by standard; empty without hearers
 };
 
 struct ThresholdReport : StudyHead {
   study::Study design;
   std::vector<std::string> choices;
-  /// The proportion right at the threshold, of an observer without lapses; nothing without
-  /// thresholds.
+  /// The share right at the threshold for an observer without lapses; nothing without thresholds.
   std::optional<double> criterion{};
-  double guess = 0.5;      ///< right by guessing
-  int without_answer = 0;  ///< trials of tracks that were left out for this
+  double guess = 0.5;      ///< share right by guessing
+  int without_answer = 0;  ///< omitted trials of tracks
   std::vector<TrackReport> tracks;
   std::vector<StandardReport> standards;
   std::vector<DifferenceReport> differences;
-  std::optional<SoundReport> control{};  ///< nothing without a trial of it
-  std::optional<AgainstGuessing> catches{};
-  std::vector<choices::Attention> attention;  ///< of the people in `catches`, in their order
+  std::optional<SoundReport> control{};  ///< nothing without control trials
+  std::optional<GuessingTests> catches{};
+  std::vector<choices::Attention> attention;  ///< by catches->people
   std::vector<ChoiceUse> choice_use;
-  choices::Preferences preferences;  ///< nobody with same or different, which has no right interval
+  choices::Preferences preferences;  ///< empty for same or different
   Repetition after_right;
   Repetition after_wrong;
   GroupTest learning_db;
@@ -149,17 +147,16 @@ struct ThresholdReport : StudyHead {
   [[nodiscard]] bool has_thresholds() const { return criterion.has_value(); }
 };
 
-/// \param jobs  threads for fits, 0: one for each core
-/// Cost: a tenth of a second a track; with constant stimuli a second.
+/// Computes the report. Cost: 0.1 s per track; with constant stimuli 1 s.
+/// \param jobs  threads for fits; 0: one for each core
 [[nodiscard]] ThresholdReport make_report(const Outcomes& outcomes, int jobs = 0);
 
-/// What a level of discrimination is: the Weber fraction of gain and pitch (0.1 for 10 %), the
-/// change of an order, the share of the second texture of a blend.
+/// The quantity at a level of discrimination: the Weber fraction of gain and pitch (0.1 for 10%),
+/// the change of an order, the share of the second texture of a blend.
 /// \return nothing for detection
 [[nodiscard]] std::optional<double> quantity_at(const study::threshold::ThresholdOptions& options,
                                                 const study::threshold::Standard& standard,
                                                 const std::optional<double>& level);
-/// The same for a threshold and its interval.
 [[nodiscard]] Quantity quantity_of(const study::threshold::ThresholdOptions& options,
                                    const study::threshold::Standard& standard,
                                    const procedures::Threshold& threshold);
@@ -167,47 +164,45 @@ struct ThresholdReport : StudyHead {
 /// "below", "above" or "undetermined", for files; empty for a threshold with a number.
 [[nodiscard]] std::string_view word_of(procedures::Censored censored);
 
-/// A mean over participants and its interval, as a threshold.
 [[nodiscard]] procedures::Threshold mean_threshold(const CensoredMean& mean);
 
 [[nodiscard]] std::string report_json(const ThresholdReport& report);
 
-/// Whether a track's procedure chose a trial, whether it is at a track's highest level without the
-/// procedure, or belongs to the control block.
-[[nodiscard]] bool in_track(const TrialOutcome& trial) noexcept;
+/// Whether a trial was chosen by a track's procedure, is a catch trial of a track, or is in the
+/// control block, respectively.
+[[nodiscard]] bool is_track_trial(const TrialOutcome& trial) noexcept;
 [[nodiscard]] bool is_catch(const TrialOutcome& trial) noexcept;
-[[nodiscard]] bool in_control(const TrialOutcome& trial) noexcept;
-/// Whether a trial was answered, so that it is right or wrong.
+[[nodiscard]] bool is_control_trial(const TrialOutcome& trial) noexcept;
+/// Whether a trial was answered, and so is right or wrong.
 [[nodiscard]] bool is_answer(const TrialOutcome& trial) noexcept;
 
-/// People with their trials that have an answer, of tracks, catch trials and the control block, in
-/// the order in which they were felt.
+/// People with their answered trials of tracks, catch trials and the control block, in felt order.
 /// \param outcomes  must outlive the result
 [[nodiscard]] std::vector<choices::Person> people_of(const Outcomes& outcomes);
 
-/// \param standards  whose means are also given without those who could hear
-/// \return nothing without a trial with the hand off the device
+/// \param standards  for SoundReport::without_hearers
+/// \return nothing without control trials
 [[nodiscard]] std::optional<SoundReport> sound_report(std::span<const choices::Person> people,
                                                       double guess,
                                                       std::span<const StandardReport> standards);
 
-/// Who could hear it, with their right answers: "3 of 12 participants have an own p of ...: P3 (20
-/// of 20)"; empty if nobody stands out.
+/// The hearers with their right answers: "3 of 12 participants have an individual p of ...: P3 (20
+/// of 20)"; may be empty
 [[nodiscard]] std::string hearers_words(const SoundReport& control);
 
-/// The tracks with a trial and their estimates, by participant, then by track.
+/// The tracks with a trial, by participant, then by track.
 [[nodiscard]] std::vector<TrackReport> track_reports(const study::Study& study,
                                                      std::span<const choices::Person> people,
                                                      int jobs);
 
-/// Counts and d' of same or different, by participant, then pooled; nothing for another question.
+/// Counts and d' of same or different, by participant, then pooled; empty for other questions.
 [[nodiscard]] std::vector<SameDifferentLevel> same_different_levels(
     const study::Study& study, std::span<const choices::Person> people);
 /// \param levels  of same_different_levels
 [[nodiscard]] std::vector<SameDifferentGroup> same_different_groups(
     std::span<const SameDifferentLevel> levels);
 
-/// How a reader could misread the numbers, the gravest first.
+/// Warnings against misreading the report, the most serious first.
 /// \param report  complete except for its warnings
 [[nodiscard]] std::vector<std::string> threshold_warnings(const ThresholdReport& report);
 

@@ -6,42 +6,42 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Right answers of all together, and of participants.
-Json outside_json(const AgainstGuessing& outside, double guess) {
-  Json object = object_of(outside.pooled, right_measures(false));
+/// Right answers, pooled and by participant.
+Json right_answers_json(const GuessingTests& answers, double guess) {
+  Json object = object_of(answers.pooled, right_measures(false));
   object["guess"] = guess;
-  object["participants"] = objects_of(outside.people, right_measures(true));
+  object["participants"] = objects_of(answers.people, right_measures(true));
   return object;
 }
 
 Json control_json(const ThresholdReport& report) {
   if (!report.control) return nullptr;
   const SoundReport& control = *report.control;
-  Json object = outside_json(control, report.guess);
-  object["anybody"] = Json::parse(choices::global_null_json(control.anybody));
+  Json object = right_answers_json(control, report.guess);
+  object["anybody"] = Json::parse(choices::global_null_json(control.global_null));
   object["detectable"] = {{"trials", control.detectable.trials},
                           {"right", control.detectable.right},
                           {"share", figure_json(control.detectable.share)},
-                          {"with", choices::kFoundWith}};
+                          {"with", choices::kDetectionPower}};
   object["hearers"] = control.hearers;
   object["without_hearers"] = Json::array();
-  for (std::size_t i = 0; i < control.without.size(); ++i) {
-    Json one{{"standard", report.standards[i].words},
-             {"participants", control.without[i].participants}};
-    one.update(object_of(control.without[i], censored_measures("mean")));
-    object["without_hearers"].push_back(std::move(one));
+  for (std::size_t i = 0; i < control.without_hearers.size(); ++i) {
+    Json entry{{"standard", report.standards[i].words},
+               {"participants", control.without_hearers[i].participants}};
+    entry.update(object_of(control.without_hearers[i], censored_measures("mean")));
+    object["without_hearers"].push_back(std::move(entry));
   }
   return object;
 }
 
 Json catch_json(const ThresholdReport& report) {
   if (!report.catches) return nullptr;
-  Json object = outside_json(*report.catches, report.guess);
-  object["attentive"] = choices::kAttentive;
+  Json object = right_answers_json(*report.catches, report.guess);
+  object["attentive"] = choices::kMinCatchAccuracy;
   for (std::size_t i = 0; i < report.attention.size(); ++i) {
-    const choices::Attention& one = report.attention[i];
+    const choices::Attention& attention = report.attention[i];
     object["participants"][i]["attending"] = {
-        {"p", one.p}, {"p_holm", one.p_holm}, {"doubtful", one.is_doubtful()}};
+        {"p", attention.p}, {"p_holm", attention.p_holm}, {"doubtful", attention.is_doubtful()}};
   }
   return object;
 }

@@ -10,44 +10,44 @@ namespace touchtrial::analysis::threshold {
 namespace {
 
 CensoredMean mean_without(const StandardReport& standard, const std::vector<std::string>& names) {
-  std::vector<PersonThreshold> others;
+  std::vector<PersonThreshold> other_people;
   for (std::size_t i = 0; i < standard.people.size(); ++i) {
     if (std::ranges::find(names, standard.people[i]) == names.end()) {
-      others.push_back(standard.thresholds[i]);
+      other_people.push_back(standard.thresholds[i]);
     }
   }
-  return mean_of(others);
+  return mean_of(other_people);
 }
 
 }  // namespace
 
 std::optional<SoundReport> sound_report(std::span<const choices::Person> people, double guess,
                                         std::span<const StandardReport> standards) {
-  const std::optional<AgainstGuessing> answers =
-      choices::against_guessing(people, guess, in_control);
+  const std::optional<GuessingTests> answers =
+      choices::test_against_guessing(people, guess, is_control_trial);
   if (!answers) return std::nullopt;
   SoundReport report{*answers,
                      choices::test_anyone_above_chance(*answers, guess),
-                     choices::detectable_in(*answers, guess),
+                     choices::detectable_accuracy(*answers, guess),
                      {},
                      {}};
-  report.hearers = choices::people_above_chance(*answers, report.anybody);
+  report.hearers = choices::people_above_chance(*answers, report.global_null);
   if (report.hearers.empty()) return report;
-  for (const StandardReport& one : standards) {
-    report.without.push_back(mean_without(one, report.hearers));
+  for (const StandardReport& standard : standards) {
+    report.without_hearers.push_back(mean_without(standard, report.hearers));
   }
   return report;
 }
 
 std::string hearers_words(const SoundReport& control) {
   std::vector<std::string> people;
-  for (const RightAnswers& one : control.people) {
-    if (std::ranges::find(control.hearers, one.participant) == control.hearers.end()) continue;
+  for (const RightAnswers& person : control.people) {
+    if (std::ranges::find(control.hearers, person.participant) == control.hearers.end()) continue;
     people.push_back(
-        fmt::format("{} ({} of {})", one.participant, one.answers.correct, one.answers.n));
+        fmt::format("{} ({} of {})", person.participant, person.answers.correct, person.answers.n));
   }
   if (people.empty()) return "";
-  return choices::alone_words(control.anybody) + ": " + listed(people, " and ");
+  return choices::individual_p_words(control.global_null) + ": " + listed(people, " and ");
 }
 
 }  // namespace touchtrial::analysis::threshold

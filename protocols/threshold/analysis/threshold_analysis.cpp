@@ -1,6 +1,5 @@
 #include "protocols/threshold/analysis/threshold_analysis.hpp"
 
-#include "core/errors.hpp"
 #include "protocols/threshold/analysis/exports.hpp"
 #include "protocols/threshold/analysis/figures.hpp"
 #include "protocols/threshold/analysis/measures.hpp"
@@ -30,27 +29,15 @@ class ThresholdResults final : public Results {
   ThresholdReport report_;
 };
 
-void require_possible_wishes(const ReportOptions& wishes) {
-  if (!wishes.trial.empty()) {
-    throw UsageError(
-        "--trial: a trial of a threshold has several planes, and its exploration is not drawn; "
-        "leave the option out");
-  }
-  if (wishes.traces == ReportOptions::Traces::yes) {
-    throw UsageError(
-        "--cues yes: ideal observers are of studies whose participants choose between textures; "
-        "leave the option out");
-  }
-}
-
 class ThresholdAnalysis final : public ProtocolAnalysis {
  public:
   std::unique_ptr<const Results> results(const Outcomes& outcomes,
-                                         const ReportOptions& wishes) const override {
-    require_possible_wishes(wishes);
+                                         const ReportOptions& options) const override {
+    refuse_exploration_options(
+        options, "trials of thresholds have several planes, so explorations are not drawn");
     ThresholdReport report = make_report(outcomes);
     const ProtocolMethods methods = protocol_methods(report);
-    return with_methods(std::make_unique<ThresholdResults>(std::move(report)), outcomes, wishes,
+    return with_methods(std::make_unique<ThresholdResults>(std::move(report)), outcomes, options,
                         methods);
   }
   std::vector<ResultTable> tables(const Outcomes& outcomes) const override {

@@ -1,8 +1,8 @@
-# The functions of threshold_model.R: one model of all participants' trials, the study's psychometric
-# function with a guess and a lapse rate (Moscatelli, Mezzetti, Lacquaniti 2012), in which participants
-# differ in intercept and slope, and again in each standard's; the threshold of each standard and the
-# difference of each two, with intervals by the delta method. Run as a script, with --csv for all
-# digits; sourced, it only defines.
+# The functions of threshold_model.R: one model of all participants' trials. It is the study's
+# psychometric function with a guess and a lapse rate (Moscatelli, Mezzetti, Lacquaniti 2012), and
+# random intercepts and slopes of participants and of participants' standards. Results are the
+# threshold of each standard and the differences of all pairs, with intervals by the delta method.
+# As a script it prints the results (--csv: with all digits); if sourced, it only defines functions.
 
 most_lapses <- 0.2
 
@@ -48,8 +48,9 @@ guessing_link <- function(guess, lapse) {
     name = paste("guessing", shape)), class = "link-glm")
 }
 
-# What participants differ in, the most first. None is without the standards: a model in which people
-# differ equally at all of them takes chance for a difference between standards too often.
+# The random effects of participants, starting with the most complete. All include the standards: a
+# model in which people differ equally at all standards mistakes chance for a difference between
+# standards too often.
 random_parts <- function(trials) {
   if (nlevels(trials$standard) < 2) {
     return(c("(1 + x | participant)", "(1 + x || participant)", "(1 | participant)"))
@@ -66,8 +67,8 @@ formula_of <- function(trials, random) {
   as.formula(paste("cbind(right, wrong) ~", fixed, "+", random))
 }
 
-# The fit, or nothing if there is none.
-# quick: fixed effects are not searched for but follow from the others; enough to compare models.
+# The fit, or NULL if there is none. quick: fixed effects are not optimised but follow from the
+# other parameters, which suffices to compare models.
 fit_of <- function(trials, random, lapse, quick = FALSE) {
   control <- lme4::glmerControl(optimizer = "bobyqa", calc.derivs = FALSE,
                                 tolPwrss = if (quick) 1e-7 else 1e-9,
@@ -78,9 +79,9 @@ fit_of <- function(trials, random, lapse, quick = FALSE) {
     error = function(e) NULL)
 }
 
-# One lapse rate for all participants: the likeliest where every participant and standard has an
-# intercept of its own, times the density Beta(1, 10), which is also the report's. Trials at the
-# highest level tell most of it.
+# The lapse rate of all participants: the maximum of the likelihood, with a separate intercept for
+# every participant and standard, times the density Beta(1, 10), which the report also uses. It is
+# determined mostly by trials at the highest level.
 lapse_of <- function(trials) {
   random <- if (nlevels(trials$standard) > 1) "(1 | participant:standard)" else "(1 | participant)"
   cost <- function(lapse) {
@@ -94,8 +95,8 @@ lapse_of <- function(trials) {
 is_sound <- function(fit) !is.null(fit) && fit@optinfo$conv$opt == 0
 is_determined <- function(fit) is_sound(fit) && !lme4::isSingular(fit)
 
-# The first model that the trials determine; if that is none, the last one.
-# said: what was fitted, and why not more.
+# The first model that the trials determine; if there is none, the last model. said: what was
+# fitted, and why no larger model was used.
 fitted_model <- function(trials) {
   lapse <- lapse_of(trials)
   said <- sprintf("Lapse rate, one for all participants: %.3f.", lapse)
@@ -116,7 +117,7 @@ fitted_model <- function(trials) {
     else "The search did not converge: do not quote the intervals.")))
 }
 
-# Names of the intercept and the slope of each standard, and where its levels are counted from.
+# The names of the intercept and the slope of each standard, and the centre of its levels.
 terms_of <- function(trials) {
   standards <- levels(trials$standard)
   several <- length(standards) > 1
@@ -141,9 +142,9 @@ levels_of <- function(fit, trials) {
        covariance = gradient %*% as.matrix(vcov(fit)) %*% t(gradient))
 }
 
-# Thresholds, and first less second of each two. Intervals have as many degrees of freedom as
-# participants, less one, and errors are wider by sqrt(n / (n - 1)): likelihood takes the means for
-# known where it estimates how people differ.
+# Thresholds, and the difference of each pair, first minus second. Intervals have as many degrees of
+# freedom as participants, minus one. Errors are multiplied by sqrt(n / (n - 1)), because maximum
+# likelihood treats the means as known when it estimates how people differ.
 results_of <- function(fit, trials) {
   found <- levels_of(fit, trials)
   n <- nlevels(trials$participant)

@@ -17,13 +17,13 @@ using analysis::threshold::TrackReport;
 constexpr int kMinPilots = 3;
 /// Shares of right answers at d' = 1.62, the criterion of stimulus levels, with two and three
 /// intervals.
-constexpr double kRightOfTwo = 0.8744;
-constexpr double kRightOfThree = 0.794;
+constexpr double kShareRightOfTwo = 0.8744;
+constexpr double kShareRightOfThree = 0.794;
 
 /// The distance from the report's thresholds to the criterion of stimulus levels, dB. It is the
 /// mean over the psychometric functions of all tracks with a threshold.
 double criterion_shift_db(const ThresholdReport& report, std::size_t standard) {
-  const double right = report.guess > 0.4 ? kRightOfTwo : kRightOfThree;
+  const double right = report.guess > 0.4 ? kShareRightOfTwo : kShareRightOfThree;
   double sum = 0.0;
   int n = 0;
   for (const TrackReport& track : report.tracks) {
@@ -42,7 +42,7 @@ std::optional<std::vector<std::pair<std::string, double>>> pilot_means(
     const ThresholdReport& report, const std::string& place) {
   const study::threshold::ThresholdOptions& options = report.options();
   if (options.task != study::threshold::Task::detection ||
-      options.along != study::threshold::Along::gain ||
+      options.along != study::threshold::LevelQuantity::gain ||
       options.question != study::threshold::Question::which_interval) {
     return std::nullopt;
   }
@@ -52,12 +52,12 @@ std::optional<std::vector<std::pair<std::string, double>>> pilot_means(
     const CensoredMean& mean = standard.mean;
     if (mean.exact < kMinPilots || !mean.mean) {
       throw StudyError(one_line(fmt::format(
-          "{}: has {} known thresholds of {} and {} unknown ones; it needs {} or more known ones, "
-          "and "
-          "no more unknown ones than that; run more pilots",
-          place, mean.exact, standard.words, mean.participants - mean.exact, kMinPilots)));
+          "{}: has {} known and {} unknown thresholds of {}; it needs {} or more known ones, and "
+          "no "
+          "more unknown than known ones; run more pilots",
+          place, mean.exact, mean.participants - mean.exact, standard.words, kMinPilots)));
     }
-    means.emplace_back(report.classes.at(static_cast<std::size_t>(standard.of.class_index)),
+    means.emplace_back(report.classes.at(static_cast<std::size_t>(standard.definition.class_index)),
                        *mean.mean + criterion_shift_db(report, i));
   }
   if (means.empty()) throw StudyError(one_line(place + ": has no threshold yet; run pilots"));

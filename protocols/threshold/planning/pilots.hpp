@@ -1,4 +1,4 @@
-/// \file Detection thresholds of pilots. Source: docs/perception.md, "Pilots".
+/// \file Detection thresholds from pilot studies. Source: docs/perception.md, "Pilots".
 #pragma once
 
 #include "protocols/threshold/analysis/report.hpp"
@@ -11,10 +11,10 @@
 namespace touchtrial::planning::threshold {
 
 /// The mean thresholds of a pilot study.
-/// \param report  of the pilots' study
+/// \param report  of the pilot study
 /// \param place  prefix of error messages
-/// \return as Planner::pilot_thresholds; empty unless the study is a detection study along gain that
-///   asks which interval had the texture
+/// \return as Planner::pilot_thresholds does; empty unless the study is a detection study along
+///   gain that asks which interval had the texture
 /// \throws StudyError if there are too few thresholds
 [[nodiscard]] std::optional<std::vector<std::pair<std::string, double>>> pilot_means(
     const analysis::threshold::ThresholdReport& report, const std::string& place);

@@ -19,16 +19,16 @@
 namespace touchtrial::planning::threshold {
 namespace {
 
-constexpr int kMaxTrialsOfTrack = 2000;
+constexpr int kMaxTrialsPerTrack = 2000;
 
 std::vector<int> trials_to_try(const study::Study& study, const PowerOptions& options) {
   if (options.trials.empty()) return {study::threshold::options_of(study).track.trials};
   std::vector<int> trials = parse_numbers(options.trials, "--trials", "a number of trials");
   std::ranges::sort(trials);
-  const bool twice = std::ranges::adjacent_find(trials) != trials.end();
-  if (twice || trials.front() < 1 || trials.back() > kMaxTrialsOfTrack) {
+  const bool has_duplicates = std::ranges::adjacent_find(trials) != trials.end();
+  if (has_duplicates || trials.front() < 1 || trials.back() > kMaxTrialsPerTrack) {
     throw UsageError(fmt::format("--trials: give different numbers from 1 to {}, such as 30,60,120",
-                                 kMaxTrialsOfTrack));
+                                 kMaxTrialsPerTrack));
   }
   return trials;
 }
@@ -41,17 +41,18 @@ std::optional<std::pair<std::size_t, std::size_t>> compared_standards(const stud
     if (standards < 2) return std::nullopt;
     return std::pair<std::size_t, std::size_t>{0, 1};
   }
-  const std::vector<int> named =
+  const std::vector<int> numbers =
       parse_numbers(options.difference, "--difference", "a standard's number");
-  const bool is_pair = named.size() == 2 && named[0] != named[1];
-  const auto [min, max] = std::ranges::minmax(named);
+  const bool is_pair = numbers.size() == 2 && numbers[0] != numbers[1];
+  const auto [min, max] = std::ranges::minmax(numbers);
   if (!is_pair || min < 1 || max > standards) {
     throw UsageError(
         fmt::format("--difference: give the numbers of two different thresholds, such as 1,2; "
                     "the study has {}",
                     touchtrial::counted(standards, "threshold")));
   }
-  return std::pair{static_cast<std::size_t>(named[0] - 1), static_cast<std::size_t>(named[1] - 1)};
+  return std::pair{static_cast<std::size_t>(numbers[0] - 1),
+                   static_cast<std::size_t>(numbers[1] - 1)};
 }
 
 /// \throws UsageError if no participant completed the session
@@ -71,7 +72,7 @@ class ThresholdPlanner final : public Planner {
     return kOptions;
   }
 
-  std::string power(const study::Study& study, const PowerOptions& options,
+  PowerResult power(const study::Study& study, const PowerOptions& options,
                     const PowerTools& tools) const override {
     const simulation::SubjectModel subject = tools.subject();
     const std::vector<int> trials = trials_to_try(study, options);
@@ -97,7 +98,8 @@ class ThresholdPlanner final : public Planner {
       std::vector<ThresholdRow> rows = rows_of(people, report.plan, options.jobs);
       report.pools.emplace_back(std::move(people), std::move(rows));
     }
-    return options.json ? threshold_plan_json(report) : threshold_plan_text(report);
+    return {options.json ? threshold_plan_json(report) : threshold_plan_text(report),
+            threshold_power_curve(report)};
   }
 
   std::string_view study_with_tracks() const override { return "config/detection.json"; }

@@ -1,4 +1,4 @@
-/// \file The planning of threshold studies.
+/// \file Planning of threshold studies.
 #pragma once
 
 #include "analysis/planning/planner.hpp"

@@ -16,10 +16,9 @@ using analysis::Bounds;
 
 constexpr double kNoInterval = std::numeric_limits<double>::infinity();
 
-/// One sample: half-widths, and whether the comparison was significant.
 struct SampleResult {
   std::vector<double> half_widths;  ///< by standard
-  double of_difference = kNoInterval;
+  double difference_half_width = kNoInterval;
   bool significant = false;
   std::optional<bool> false_alarm;  ///< empty if the pool has no mean difference
 };
@@ -29,7 +28,7 @@ double half_width_of(std::span<const Bounds> people) {
   return interval ? 0.5 * (interval->high - interval->low) : kNoInterval;
 }
 
-bool rejects(std::span<const Bounds> people, double null, double alpha) {
+bool is_rejected(std::span<const Bounds> people, double null, double alpha) {
   const auto p = analysis::censored_p(people, null, analysis::Sides::two);
   return p && *p <= alpha;
 }
@@ -41,13 +40,13 @@ std::vector<std::size_t> draw_sample(std::size_t people, int size, RandomStream&
   return sample;
 }
 
-std::vector<Bounds> sampled(std::span<const Bounds> pool, std::span<const std::size_t> sample) {
+std::vector<Bounds> select_people(std::span<const Bounds> pool,
+                                  std::span<const std::size_t> sample) {
   std::vector<Bounds> people;
   for (const std::size_t person : sample) people.push_back(pool[person]);
   return people;
 }
 
-/// Differences between the two thresholds that the plan compares.
 struct Differences {
   std::vector<Bounds> people;
   std::optional<double> mean;  ///< over the whole pool
@@ -60,30 +59,31 @@ Differences differences_of(const ThresholdPool& pool, const ThresholdPlan& plan)
   return {std::move(people), mean};
 }
 
-void compare(const Differences& differences, const ThresholdPlan& plan,
-             std::span<const std::size_t> sample, SampleResult& result) {
-  const std::vector<Bounds> people = sampled(differences.people, sample);
-  result.of_difference = half_width_of(people);
-  result.significant = rejects(people, 0.0, plan.alpha);
-  if (differences.mean) result.false_alarm = rejects(people, *differences.mean, plan.alpha);
+void add_difference(const Differences& differences, const ThresholdPlan& plan,
+                    std::span<const std::size_t> sample, SampleResult& result) {
+  const std::vector<Bounds> people = select_people(differences.people, sample);
+  result.difference_half_width = half_width_of(people);
+  result.significant = is_rejected(people, 0.0, plan.alpha);
+  if (differences.mean) result.false_alarm = is_rejected(people, *differences.mean, plan.alpha);
 }
 
 std::optional<double> finite_quantile(std::span<const double> sorted, double share) {
-  const auto found = analysis::quantile(sorted, share);
-  return found && std::isfinite(*found) ? found : std::nullopt;
+  const auto quantile = analysis::quantile(sorted, share);
+  return quantile && std::isfinite(*quantile) ? quantile : std::nullopt;
 }
 
-HalfWidths figures_of(std::vector<double> half_widths, const std::optional<double>& wanted) {
+HalfWidths summarise_half_widths(std::vector<double> half_widths,
+                                 const std::optional<double>& target) {
   std::ranges::sort(half_widths);
   HalfWidths figures;
   figures.median = finite_quantile(half_widths, 0.5);
   figures.upper = finite_quantile(half_widths, 0.9);
-  figures.without.n = static_cast<int>(half_widths.size());
-  figures.without.correct = static_cast<int>(std::ranges::count(half_widths, kNoInterval));
-  if (!wanted) return figures;
+  figures.without_interval.n = static_cast<int>(half_widths.size());
+  figures.without_interval.correct = static_cast<int>(std::ranges::count(half_widths, kNoInterval));
+  if (!target) return figures;
   figures.narrow.n = static_cast<int>(half_widths.size());
   figures.narrow.correct =
-      static_cast<int>(std::ranges::upper_bound(half_widths, *wanted) - half_widths.begin());
+      static_cast<int>(std::ranges::upper_bound(half_widths, *target) - half_widths.begin());
   figures.narrow_interval = analysis::wilson_interval(figures.narrow);
   return figures;
 }
@@ -92,12 +92,11 @@ DifferencePower power_of(const std::vector<SampleResult>& samples, const Thresho
   DifferencePower power;
   std::vector<double> widths;
   for (const SampleResult& sample : samples) {
-    widths.push_back(sample.of_difference);
-    ++power.significant.n;
-    power.significant.correct += sample.significant ? 1 : 0;
+    widths.push_back(sample.difference_half_width);
+    power.significant.add(sample.significant);
     if (sample.false_alarm) power.false_alarms.add(*sample.false_alarm);
   }
-  power.width = figures_of(std::move(widths), plan.width_db);
+  power.width = summarise_half_widths(std::move(widths), plan.width_db);
   power.power = analysis::wilson_interval(power.significant);
   power.type_one = analysis::wilson_interval(power.false_alarms);
   return power;
@@ -109,7 +108,7 @@ ThresholdRow threshold_row(const ThresholdPool& pool, const ThresholdPlan& plan,
   for (std::size_t standard = 0; standard < pool.standards.size(); ++standard) {
     std::vector<double> widths;
     for (const SampleResult& sample : samples) widths.push_back(sample.half_widths[standard]);
-    row.standards.push_back(figures_of(std::move(widths), plan.width_db));
+    row.standards.push_back(summarise_half_widths(std::move(widths), plan.width_db));
   }
   if (plan.difference) row.difference = power_of(samples, plan);
   return row;
@@ -118,10 +117,11 @@ ThresholdRow threshold_row(const ThresholdPool& pool, const ThresholdPlan& plan,
 }  // namespace
 
 std::vector<Bounds> differences_in(const ThresholdPool& pool,
-                                   const std::pair<std::size_t, std::size_t>& of) {
+                                   const std::pair<std::size_t, std::size_t>& standards) {
   std::vector<Bounds> differences;
   for (const std::vector<Bounds>& person : pool.people) {
-    differences.push_back(analysis::difference_of(person[of.first], person[of.second]));
+    differences.push_back(
+        analysis::difference_of(person[standards.first], person[standards.second]));
   }
   return differences;
 }
@@ -145,9 +145,9 @@ std::vector<ThresholdRow> rows_of(const ThresholdPool& pool, const ThresholdPlan
       RandomStream random(plan.seed, "power: sample of " + std::to_string(size), run);
       const std::vector<std::size_t> sample = draw_sample(pool.people.size(), size, random);
       for (const std::vector<Bounds>& people : standards) {
-        samples[run].half_widths.push_back(half_width_of(sampled(people, sample)));
+        samples[run].half_widths.push_back(half_width_of(select_people(people, sample)));
       }
-      if (plan.difference) compare(differences, plan, sample, samples[run]);
+      if (plan.difference) add_difference(differences, plan, sample, samples[run]);
     });
     rows.push_back(threshold_row(pool, plan, size, samples));
   }

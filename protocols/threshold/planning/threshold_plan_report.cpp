@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -32,18 +33,18 @@ std::string compared_words(const ThresholdPlanReport& report) {
   return words[report.plan.difference->first] + " less " + words[report.plan.difference->second];
 }
 
-/// The standard error of a mean, due to the finite pool. It is slightly too large, because people
+/// The standard error of a mean due to the finite pool. It is slightly too large, because people
 /// beyond the levels also contribute information.
 std::optional<double> pool_error(const CensoredMean& mean) {
   if (!mean.sd) return std::nullopt;
   return *mean.sd / std::sqrt(static_cast<double>(mean.exact));
 }
 
-std::vector<std::string> pool_cells(int trials, const std::string& what,
+std::vector<std::string> pool_cells(int trials, const std::string& name,
                                     const std::vector<Bounds>& people) {
   const CensoredMean mean = analysis::censored_mean(people);
   return {std::to_string(trials),
-          what,
+          name,
           std::to_string(mean.participants),
           std::to_string(mean.exact),
           db_text(mean.mean),
@@ -80,13 +81,13 @@ std::string widths_text(const ThresholdPlanReport& report) {
     header.push_back(fmt::format("within {:.4g} dB, %", *report.plan.width_db));
   }
   analysis::TextTable table(header, {2});
-  const auto add = [&](const ThresholdRow& row, const std::string& what, const HalfWidths& width) {
+  const auto add = [&](const ThresholdRow& row, const std::string& name, const HalfWidths& width) {
     std::vector<std::string> cells = {std::to_string(row.trials),
                                       std::to_string(row.participants),
-                                      what,
+                                      name,
                                       db_text(width.median),
                                       db_text(width.upper),
-                                      power_per_cent(width.without.share().value_or(0.0))};
+                                      power_per_cent(width.without_interval.share().value_or(0.0))};
     if (report.plan.width_db) cells.push_back(share_text(width.narrow, width.narrow_interval));
     table.add(std::move(cells));
   };
@@ -118,17 +119,17 @@ std::string stamp_of(const ThresholdPlanReport& report) {
          report.setting.subject;
 }
 
-/// One warning for each threshold and number of trials for which the pool has no mean.
+/// One warning per threshold and number of trials without a mean in the pool.
 std::vector<std::string> warnings_without_mean(const ThresholdPlanReport& report) {
   std::vector<std::string> sentences;
   for (const auto& [pool, rows] : report.pools) {
     for (std::size_t i = 0; i < pool.standards.size(); ++i) {
       const CensoredMean mean = analysis::censored_mean(thresholds_in(pool, i));
-      if (mean.lack != analysis::Lack::most) continue;
+      if (mean.lack != analysis::MissingReason::most) continue;
       sentences.push_back(fmt::format(
           "{}, {} trials: {} of {} simulated participants have a threshold within the levels, "
           "fewer than half, so there is no mean, and most studies would have none. Extend the "
-          "levels, or use a texture that is easier to feel, or another device.",
+          "levels, use a texture that is easier to feel, or use another device.",
           pool.standards[i], pool.trials, mean.exact, mean.participants));
     }
   }
@@ -144,7 +145,8 @@ std::vector<std::string> sentences_of(const ThresholdPlanReport& report) {
           report.plan.runs),
       "Half-width: of the 95 % interval of the mean over participants; its median and 90 % point "
       "over samples. Means include everybody, as in the report: people beyond the levels "
-      "contribute the probability of lying there. Without: samples without an interval, because "
+      "enter by the probability of a threshold there. Without: samples without an interval, "
+      "because "
       "more than half of the people are beyond the levels. Add the participants that you expect to "
       "lose."};
   std::ranges::move(warnings_without_mean(report), std::back_inserter(sentences));
@@ -173,14 +175,14 @@ ordered_json share_json(const analysis::Proportion& share, const analysis::Inter
 ordered_json widths_json(const HalfWidths& width) {
   ordered_json object = {{"half_width_median", number_json(width.median)},
                          {"half_width_90", number_json(width.upper)},
-                         {"samples_without_interval", width.without.correct}};
+                         {"samples_without_interval", width.without_interval.correct}};
   if (width.narrow.n > 0) object["within"] = share_json(width.narrow, width.narrow_interval);
   return object;
 }
 
-ordered_json mean_json(const std::string& what, const std::vector<Bounds>& people) {
+ordered_json mean_json(const std::string& name, const std::vector<Bounds>& people) {
   const CensoredMean mean = analysis::censored_mean(people);
-  return {{"of", what},
+  return {{"of", name},
           {"people", mean.participants},
           {"known", mean.exact},
           {"mean", number_json(mean.mean)},
@@ -230,6 +232,26 @@ ordered_json pool_json(const ThresholdPlanReport& report, const ThresholdPool& p
 }
 
 }  // namespace
+
+PowerCurve threshold_power_curve(const ThresholdPlanReport& report) {
+  const ThresholdPlan& plan = report.plan;
+  if (!plan.difference && !plan.width_db) return {};
+  PowerCurve curve{report.setting.study,
+                   plan.difference
+                       ? "significant difference, " + compared_words(report)
+                       : fmt::format("95 % interval within {:.4g} dB of the mean threshold, {}",
+                                     *plan.width_db, report.pools.front().first.standards.front()),
+                   {}};
+  for (const auto& [pool, rows] : report.pools) {
+    PowerSeries series{report.pools.size() > 1 ? fmt::format("{} trials", pool.trials) : "", {}};
+    for (const ThresholdRow& row : rows) {
+      series.points.push_back({row.participants, plan.difference ? row.difference->significant
+                                                                 : row.standards.front().narrow});
+    }
+    curve.series.push_back(std::move(series));
+  }
+  return curve;
+}
 
 std::string threshold_plan_text(const ThresholdPlanReport& report) {
   const std::string stamp = analysis::wrapped("", stamp_of(report));

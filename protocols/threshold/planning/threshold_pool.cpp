@@ -25,53 +25,53 @@ using procedures::ThresholdEstimate;
 using procedures::TrackTrial;
 using study::threshold::ThresholdOptions;
 
-/// The trials of each track, including its catch trials.
+/// The trials of each track, including catch trials.
 using TracksOfPerson = std::vector<std::vector<TrackTrial>>;
 
-study::Study with_trials(const study::Study& study, int trials) {
+study::Study with_trials_per_track(const study::Study& study, int trials) {
   ThresholdOptions options = study::threshold::options_of(study);
   options.track.trials = trials;
   options.control_trials = 0;
-  study::Study changed = study::threshold::with_options(study, options);
+  study::Study changed_study = study::threshold::with_options(study, options);
   try {
-    static_cast<void>(procedures::Block(study::threshold::block_settings(changed), Digest{}));
+    static_cast<void>(procedures::Block(study::threshold::block_settings(changed_study), Digest{}));
   } catch (const std::invalid_argument& error) {
     throw UsageError(fmt::format(
         "--trials: {} is impossible for this study: {}; use another number", trials, error.what()));
   }
-  return changed;
+  return changed_study;
 }
 
-/// \return empty if a session ended early
+/// \return empty if a session was not completed
 std::optional<TracksOfPerson> tracks_of_person(const PoolSetting& setting, int number) {
   TracksOfPerson tracks(study::threshold::block_settings(setting.key.study).tracks.size());
-  const auto note = [&tracks](const study::Order& order, const study::Trial& shown,
-                              const Answer& answer) {
-    if (!shown.level || shown.level->track < 1) return;
-    tracks[static_cast<std::size_t>(shown.level->track - 1)].push_back(
-        {static_cast<std::size_t>(shown.level->level),
-         order.schedule().choice_of(answer) == shown.right});
+  const auto add_trial = [&tracks](const study::Order& order, const study::Trial& presented,
+                                   const Answer& answer) {
+    if (!presented.level || presented.level->track < 1) return;
+    tracks[static_cast<std::size_t>(presented.level->track - 1)].push_back(
+        {static_cast<std::size_t>(presented.level->level),
+         order.schedule().choice_of(answer) == presented.right});
   };
-  if (!run_pool_sessions(setting, number, note)) return std::nullopt;
+  if (!run_pool_sessions(setting, number, add_trial)) return std::nullopt;
   return tracks;
 }
 
-/// One person's thresholds, by standard.
 std::vector<PersonThreshold> thresholds_of(const TracksOfPerson& tracks,
                                            const study::Study& study) {
   const std::vector<procedures::TrackSettings> settings =
       study::threshold::block_settings(study).tracks;
-  const auto each = static_cast<std::size_t>(study::threshold::options_of(study).tracks_each);
+  const auto tracks_each =
+      static_cast<std::size_t>(study::threshold::options_of(study).tracks_each);
   std::vector<PersonThreshold> thresholds;
-  std::vector<ThresholdEstimate> own;
+  std::vector<ThresholdEstimate> standard_estimates;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     const std::vector<double>& levels = settings[i].levels;
     const procedures::ParameterGrid& grid = settings[i].grid;
-    own.push_back(procedures::estimate_threshold(procedures::counts_of(levels, tracks[i]), levels,
-                                                 grid.shape, grid.guess));
-    if (own.size() < each) continue;
-    thresholds.push_back(analysis::threshold::person_threshold(own, levels));
-    own.clear();
+    standard_estimates.push_back(procedures::estimate_threshold(
+        procedures::counts_of(levels, tracks[i]), levels, grid.shape, grid.guess));
+    if (standard_estimates.size() < tracks_each) continue;
+    thresholds.push_back(analysis::threshold::person_threshold(standard_estimates, levels));
+    standard_estimates.clear();
   }
   return thresholds;
 }
@@ -94,34 +94,34 @@ ThresholdPool simulated_thresholds(const study::StudyKey& key,
                                    const simulation::SubjectModel& subject, int trials,
                                    const ThresholdPoolOptions& options,
                                    const study::Progress& progress) {
-  const ThresholdOptions& registered = study::threshold::options_of(key.study);
-  if (registered.question == study::threshold::Question::same_different) {
+  const ThresholdOptions& study_options = study::threshold::options_of(key.study);
+  if (study_options.question == study::threshold::Question::same_different) {
     throw UsageError(one_line(key.study.source +
                               ": the question same-different gives a d' at each level but no "
                               "threshold; use a study with another question"));
   }
-  study::StudyKey changed = key;
-  changed.study = with_trials(key.study, trials);
+  study::StudyKey changed_key = key;
+  changed_key.study = with_trials_per_track(key.study, trials);
   const std::unique_ptr<const simulation::Population> population =
-      simulation::population_of({changed, source, subject, options.seed, options.jobs});
-  const PoolSetting setting{changed, source, subject, *population};
-  std::vector<std::optional<std::vector<PersonThreshold>>> found(
+      simulation::population_of({changed_key, source, subject, options.seed, options.jobs});
+  const PoolSetting setting{changed_key, source, subject, *population};
+  std::vector<std::optional<std::vector<PersonThreshold>>> all_thresholds(
       static_cast<std::size_t>(options.people));
-  std::mutex counting;
-  int done = 0;
-  in_parallel(options.jobs, found.size(), [&](std::size_t i) {
+  std::mutex progress_mutex;
+  int finished = 0;
+  in_parallel(options.jobs, all_thresholds.size(), [&](std::size_t i) {
     const auto tracks = tracks_of_person(setting, static_cast<int>(i) + 1);
-    if (tracks) found[i] = thresholds_of(*tracks, changed.study);
-    const std::lock_guard lock(counting);
-    if (progress) progress(++done, options.people);
+    if (tracks) all_thresholds[i] = thresholds_of(*tracks, changed_key.study);
+    const std::lock_guard lock(progress_mutex);
+    if (progress) progress(++finished, options.people);
   });
   ThresholdPool pool{.trials = trials, .standards = {}, .people = {}};
   for (const auto& standard : study::threshold::standards_of(key.study)) {
     pool.standards.push_back(study::threshold::words_of(key.study, standard));
   }
-  for (const auto& thresholds : found) {
+  for (const auto& thresholds : all_thresholds) {
     if (thresholds) {
-      add_person(pool, *thresholds, registered.tracks_each);
+      add_person(pool, *thresholds, study_options.tracks_each);
     } else {
       ++pool.unfinished;
     }

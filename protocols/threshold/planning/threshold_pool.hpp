@@ -1,6 +1,5 @@
 /// \file A pool of simulated participants with their thresholds, from which studies of any size are
-/// drawn.
-/// Source: docs/planning.md, "Power of threshold studies".
+/// drawn. Source: docs/planning.md, "Power of threshold studies".
 #pragma once
 
 #include "analysis/statistics/censored_mean.hpp"
@@ -18,26 +17,26 @@ namespace touchtrial::planning::threshold {
 
 /// Participants who completed a session with a given number of trials per track.
 struct ThresholdPool {
-  int trials = 0;                      ///< of a track
-  std::vector<std::string> standards;  ///< in words
+  int trials = 0;                      ///< per track
+  std::vector<std::string> standards;  ///< words_of each standard
   /// Thresholds by participant and standard, as the report computes them.
   std::vector<std::vector<analysis::Bounds>> people;
   int unfinished = 0;  ///< participants with an incomplete session; not in `people`
-  int tracks = 0;      ///< of all `people`
+  int tracks = 0;      ///< number of tracks of all `people`
   int below = 0;       ///< thresholds below the lowest level
-  int above = 0;
+  int above = 0;       ///< thresholds above the highest level
   int undetermined = 0;
 };
 
 struct ThresholdPoolOptions {
   int people = 100;        ///< >= 2
-  std::uint64_t seed = 1;  ///< of all random numbers of participants, as in `simulate --seed`
-  int jobs = 1;            ///< threads; results do not depend on them
+  std::uint64_t seed = 1;  ///< of the participants, as in `simulate --seed`
+  int jobs = 1;            ///< number of threads; does not affect results
 };
 
-/// Simulates the sessions of a pool, without the control block after the tracks. The thresholds are
-/// those that `report` computes. Participant n is the same person for every number of trials.
-/// \param trials  of a track; replaces the study's number
+/// Simulates the sessions of a pool, without the control block after the tracks, and computes
+/// thresholds as `report` does. Participant n is the same person for every number of trials.
+/// \param trials  trials per track; replaces the study's number
 /// \param progress  called after each participant, from one thread at a time
 /// \throws UsageError if the procedure does not permit this number of trials, or the question gives
 ///   no thresholds

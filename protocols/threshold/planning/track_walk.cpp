@@ -22,11 +22,11 @@ using procedures::Posterior;
 using study::threshold::Question;
 using study::threshold::ThresholdOptions;
 
-Belief summary_of(const Marginal& marginal, double mode) {
+ParameterSummary summary_of(const Marginal& marginal, double mode) {
   return {procedures::mean_of(marginal), procedures::sd_of(marginal), mode};
 }
 
-ObserverBelief belief_of(const Posterior& posterior) {
+ObserverSummary observer_summary_of(const Posterior& posterior) {
   const procedures::Observer mode = posterior.mode();
   return {summary_of(posterior.threshold(), mode.threshold),
           summary_of(posterior.slope(), mode.slope), summary_of(posterior.lapse(), mode.lapse)};
@@ -35,34 +35,35 @@ ObserverBelief belief_of(const Posterior& posterior) {
 /// Replays the answers through the procedure, and records the levels.
 /// \return index of the level of each answer
 std::vector<std::size_t> replay_levels(TrackWalk& walk) {
-  // A fixed seed, so that repeated calls give the same order of constant stimuli.
+  // Fixed seed: repeated calls give the same order of constant stimuli.
   RandomStream stream(0, "touchtrial procedure", static_cast<std::uint64_t>(walk.track));
   const std::unique_ptr<procedures::Procedure> procedure =
       procedures::make_procedure(walk.settings, stream);
-  std::vector<std::size_t> answered;
+  std::vector<std::size_t> answered_levels;
   for (const bool correct : walk.answers) {
-    answered.push_back(procedure->next());
+    answered_levels.push_back(procedure->next());
     procedure->answer(correct);
   }
-  for (const std::size_t level : answered) walk.levels.push_back(walk.settings.levels[level]);
+  for (const std::size_t level : answered_levels)
+    walk.levels.push_back(walk.settings.levels[level]);
   if (walk.answers.size() < static_cast<std::size_t>(walk.settings.trials)) {
     walk.levels.push_back(walk.settings.levels[procedure->next()]);
   }
-  return answered;
+  return answered_levels;
 }
 
-void update_posterior(TrackWalk& walk, const std::vector<std::size_t>& answered) {
+void update_posterior(TrackWalk& walk, const std::vector<std::size_t>& answered_levels) {
   Posterior posterior(walk.settings.levels, walk.settings.grid);
   walk.prior = {posterior.threshold(), posterior.slope(), posterior.lapse()};
-  walk.posteriors.push_back(belief_of(posterior));
-  for (std::size_t i = 0; i < answered.size(); ++i) {
-    posterior.observe(answered[i], walk.answers[i]);
-    walk.posteriors.push_back(belief_of(posterior));
+  walk.posteriors.push_back(observer_summary_of(posterior));
+  for (std::size_t i = 0; i < answered_levels.size(); ++i) {
+    posterior.observe(answered_levels[i], walk.answers[i]);
+    walk.posteriors.push_back(observer_summary_of(posterior));
   }
 }
 
-ordered_json belief_json(const Belief& belief) {
-  return {{"mean", belief.mean}, {"sd", belief.sd}, {"mode", belief.mode}};
+ordered_json parameter_summary_json(const ParameterSummary& summary) {
+  return {{"mean", summary.mean}, {"sd", summary.sd}, {"mode", summary.mode}};
 }
 
 ordered_json walked_grid_json(const TrackWalk& walk) {
@@ -104,8 +105,8 @@ TrackWalk replay_track(const study::Study& study, int track, const std::vector<b
         "--answers: has {} answers, but the track has {} trials; give at most one answer per trial",
         answers.size(), walk.settings.trials));
   }
-  const std::vector<std::size_t> answered = replay_levels(walk);
-  if (options.question != Question::same_different) update_posterior(walk, answered);
+  const std::vector<std::size_t> answered_levels = replay_levels(walk);
+  if (options.question != Question::same_different) update_posterior(walk, answered_levels);
   return walk;
 }
 
@@ -113,10 +114,10 @@ std::string track_walk_json(const TrackWalk& walk) {
   ordered_json posterior = nullptr;
   if (!walk.posteriors.empty()) {
     posterior = ordered_json::array();
-    for (const ObserverBelief& belief : walk.posteriors) {
-      posterior.push_back({{"threshold", belief_json(belief.threshold)},
-                           {"slope", belief_json(belief.slope)},
-                           {"lapse", belief_json(belief.lapse)}});
+    for (const ObserverSummary& summary : walk.posteriors) {
+      posterior.push_back({{"threshold", parameter_summary_json(summary.threshold)},
+                           {"slope", parameter_summary_json(summary.slope)},
+                           {"lapse", parameter_summary_json(summary.lapse)}});
     }
   }
   ordered_json answers = ordered_json::array();

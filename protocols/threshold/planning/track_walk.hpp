@@ -1,5 +1,5 @@
-/// \file Replays answers through the procedure of one track: its levels and posteriors. Source:
-/// docs/thresholds.md, "The command".
+/// \file Replays answers through the procedure of one track to show its levels and posteriors.
+/// Source: docs/thresholds.md, "The command".
 #pragma once
 
 #include "protocols/procedures/posterior.hpp"
@@ -11,33 +11,34 @@
 
 namespace touchtrial::planning::threshold {
 
-/// Summary of the posterior of one parameter. `mode` is its value at the most probable grid point.
-struct Belief {
+/// Summary of one parameter's posterior.
+struct ParameterSummary {
   double mean = 0.0;
   double sd = 0.0;
-  double mode = 0.0;
+  double mode = 0.0;  ///< value at the most probable grid point
 };
 
-/// Summary of the posterior of an observer.
-struct ObserverBelief {
-  Belief threshold;
-  Belief slope;
-  Belief lapse;
+/// Summary of the posterior of an observer's parameters.
+struct ObserverSummary {
+  ParameterSummary threshold;
+  ParameterSummary slope;
+  ParameterSummary lapse;
 };
 
-/// One track with the given answers.
+/// One track, replayed with a list of answers.
 struct TrackWalk {
   int track = 1;      ///< from 1
-  std::string words;  ///< the standard of the track, in words
-  std::string unit;   ///< of a level
+  std::string words;  ///< words_of the track's standard
+  std::string unit;   ///< of levels
   procedures::TrackSettings settings;
-  std::vector<bool> answers;  ///< whether each was right
-  /// The level of each answer and, if trials remain, of the next one.
+  std::vector<bool> answers;  ///< true: right
+  /// The level of each answer and, if trials remain, of the next trial.
   std::vector<double> levels;
-  /// Posteriors before the first answer and after each. Empty if answers have no fixed guess rate.
-  std::vector<ObserverBelief> posteriors;
-  /// Priors of threshold, slope and lapse, whose product is the prior of a grid point. Empty if
-  /// `posteriors` is.
+  /// Posteriors before the first answer and after each answer. Empty if the question has no fixed
+  /// guess rate.
+  std::vector<ObserverSummary> posteriors;
+  /// Priors of threshold, slope and lapse; their product is the prior of a grid point. Empty if
+  /// `posteriors` is empty.
   std::vector<procedures::Marginal> prior;
 };
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace touchtrial::simulation::threshold {
@@ -24,26 +25,26 @@ engine::FeltFeatures perceived(engine::FeltFeatures felt, const Individual& pers
   return felt;
 }
 
-/// The index of the strength that is farthest from the others.
-int odd_of(const std::vector<double>& strengths) {
+/// The index of the strength whose nearest neighbour is farthest away.
+int odd_index(const std::vector<double>& strengths) {
   int odd = 0;
-  double farthest = -1.0;
+  double largest_distance = -1.0;
   for (std::size_t i = 0; i < strengths.size(); ++i) {
-    double nearest = 1e300;
+    double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t j = 0; j < strengths.size(); ++j) {
       if (j != i) nearest = std::min(nearest, std::abs(strengths[i] - strengths[j]));
     }
-    if (nearest <= farthest) continue;
-    farthest = nearest;
+    if (nearest <= largest_distance) continue;
+    largest_distance = nearest;
     odd = static_cast<int>(i);
   }
   return odd;
 }
 
-/// Sets an exploration time that is long enough for any interval.
-SubjectModel with_intervals(SubjectModel subject, const study::Study& study) {
-  constexpr double kMoreS = 1.0;
-  subject.explore_s = study.trials.explore_limit_s + kMoreS;
+/// Sets an exploration time longer than any interval.
+SubjectModel with_long_exploration(SubjectModel subject, const study::Study& study) {
+  constexpr double kMarginS = 1.0;
+  subject.explore_s = study.trials.explore_limit_s + kMarginS;
   return subject;
 }
 
@@ -51,17 +52,18 @@ class ComparingPopulation final : public Population {
  public:
   explicit ComparingPopulation(const PopulationSetting& setting)
       : study_(setting.key.study),
-        subject_(with_intervals(setting.subject, study_)),
+        subject_(with_long_exploration(setting.subject, study_)),
         seed_(setting.seed),
-        expected_(learnt(setting)) {}
+        expected_(expected_change_of(setting)) {}
 
   std::unique_ptr<SimulatedParticipant> participant(int number) const override {
     return std::make_unique<ComparingParticipant>(subject_, study_, expected_, seed_, number);
   }
 
  private:
-  /// The mean over standards and passes; each pass strokes both planes on the same path.
-  [[nodiscard]] static ExpectedChange learnt(const PopulationSetting& setting);
+  /// The mean over standards and training passes. Each pass strokes both planes along the same
+  /// path.
+  [[nodiscard]] static ExpectedChange expected_change_of(const PopulationSetting& setting);
 
   const study::Study& study_;
   SubjectModel subject_;
@@ -69,7 +71,7 @@ class ComparingPopulation final : public Population {
   ExpectedChange expected_;
 };
 
-ExpectedChange ComparingPopulation::learnt(const PopulationSetting& setting) {
+ExpectedChange ComparingPopulation::expected_change_of(const PopulationSetting& setting) {
   const study::Study& study = setting.key.study;
   const ThresholdOptions& options = study::threshold::options_of(study);
   SubjectModel learner = setting.subject;
@@ -116,33 +118,34 @@ ComparingParticipant::ComparingParticipant(const SubjectModel& subject, const st
   for (std::size_t i = 0; i < weights_.size(); ++i) weights_[i] = higher[i] - lower[i];
   const auto sum = [this] { return std::accumulate(weights_.begin(), weights_.end(), 0.0); };
   if (options_.rove_db > 0.0) {
-    // If gains are roved, the overall strength is not informative.
+    // With roved gains, the overall strength is uninformative.
     const double mean = sum() / static_cast<double>(weights_.size());
     for (double& weight : weights_) weight -= mean;
   }
   const double squares =
       std::inner_product(weights_.begin(), weights_.end(), weights_.begin(), 0.0);
   const engine::FeltNoise noise = individual_.noise();
-  noise_ = std::sqrt(noise.own * noise.own * squares + noise.common * noise.common * sum() * sum());
-  // Two strengths count as different if they differ by more than the noise of their difference.
+  noise_ = std::sqrt(noise.independent * noise.independent * squares +
+                     noise.common * noise.common * sum() * sum());
+  // The criterion is the standard deviation of the difference of two strengths.
   criterion_ = std::sqrt(2.0) * noise_;
 }
 
 void ComparingParticipant::begin_visit(int visit, TrialCourse course) {
   condition_ = Condition(subject_, seed_, number_, visit, static_cast<int>(course.size()));
-  trials_ = 0;
-  begun_.clear();
+  started_count_ = 0;
+  started_trials_.clear();
 }
 
 void ComparingParticipant::interval(const session::IntervalStep& next) {
   if (next.interval == 1) {
     felt_.clear();
-    ++trials_;
+    ++started_count_;
   } else {
-    felt_.push_back(felt_last());
+    felt_.push_back(last_features());
   }
-  hears_only_ = next.hand_off;
-  if (next.interval == 1 && !begun_.insert(next.trial).second && order_) {
+  is_control_ = next.hand_off;
+  if (next.interval == 1 && !started_trials_.insert(next.trial).second && order_) {
     order_->interrupted({.place = {.trial = next.trial}});
   }
   trial_ = next.trial;
@@ -152,18 +155,19 @@ double ComparingParticipant::strength(engine::FeltFeatures felt, double noise_fa
                                       RandomStream& random) const {
   felt = perceived(felt, individual_);
   const engine::FeltNoise noise = individual_.noise();
-  const double shared = noise_factor * noise.common * random.normal();
+  const double common_noise = noise_factor * noise.common * random.normal();
   double sum = 0.0;
   for (std::size_t i = 0; i < weights_.size(); ++i) {
-    sum += weights_[i] * (felt[i] + shared + noise_factor * noise.own * random.normal());
+    sum +=
+        weights_[i] * (felt[i] + common_noise + noise_factor * noise.independent * random.normal());
   }
   return sum;
 }
 
-int ComparingParticipant::choice_from(const std::vector<double>& strengths) const {
+int ComparingParticipant::choose_from_strengths(const std::vector<double>& strengths) const {
   switch (options_.question) {
     case Question::odd_one_out:
-      return odd_of(strengths);
+      return odd_index(strengths);
     case Question::same_different:
       return std::abs(strengths[0] - strengths[1]) > criterion_ ? 1 : 0;
     case Question::which_interval:
@@ -175,52 +179,54 @@ int ComparingParticipant::choice_from(const std::vector<double>& strengths) cons
 int ComparingParticipant::answer_by_function(RandomStream& random) {
   if (!order_) {
     throw UsageError(
-        "given_function: the level is known only to `simulate`; use `touchtrial simulate`, or "
+        "given_function: only `touchtrial simulate` provides the level of a trial; use it, or "
         "remove "
         "given_function from the subject file");
   }
-  const study::Trial shown = order_->at({.place = {.trial = trial_}});
-  const int target = shown.right.value();
-  const GivenFunction& given = *subject_.given_function;
+  const study::Trial trial = order_->at({.place = {.trial = trial_}});
+  const int target = trial.right.value();
+  const GivenFunction& function = *subject_.given_function;
   const procedures::ParameterGrid& grid = options_.track.grid;
   const auto person = static_cast<std::uint64_t>(number_);
-  const int standard = std::max(0, shown.level.value().track - 1) / options_.tracks_each;
-  const double own = RandomStream(seed_, "subject: given threshold", person).normal();
-  const double own_there =
+  const int standard = std::max(0, trial.level.value().track - 1) / options_.tracks_each;
+  const double person_offset = RandomStream(seed_, "subject: given threshold", person).normal();
+  const double standard_offset =
       RandomStream(seed_, "subject: given threshold at a standard",
                    person * procedures::kMaxTracks + static_cast<std::uint64_t>(standard))
           .normal();
-  const double threshold = given.threshold + given.spread * own + given.standard_step * standard +
-                           given.standard_spread * own_there;
-  const procedures::Observer observer{grid.shape, threshold, given.slope, grid.guess, given.lapse};
-  const double level = options_.track.levels[static_cast<std::size_t>(shown.level.value().level)];
+  const double threshold = function.threshold + function.spread * person_offset +
+                           function.standard_step * standard +
+                           function.standard_spread * standard_offset;
+  const procedures::Observer observer{grid.shape, threshold, function.slope, grid.guess,
+                                      function.lapse};
+  const double level = options_.track.levels[static_cast<std::size_t>(trial.level.value().level)];
   const bool right = random.uniform() < procedures::shares_at(observer, level).correct;
-  const auto others = static_cast<std::uint64_t>(labels_.size() - 1);
-  const auto wrong = static_cast<int>(random.below(others));
+  const auto wrong = static_cast<int>(random.below(labels_.size() - 1));
   const int position = right ? target : wrong + (wrong >= target ? 1 : 0);
-  order_->answered(shown, Chosen{position});
+  order_->answered(trial, ChoiceAnswer{position});
   return position;
 }
 
 ParticipantAnswer ComparingParticipant::choose(const engine::FeltFeatures& felt,
                                                RandomStream& random) {
   felt_.push_back(felt);
-  const Moment moment = condition_.before(trials_, 0);
-  const bool lapses = random.uniform() < with_log_odds(individual_.lapse(), moment.lapse_log_odds);
-  const auto anything = static_cast<int>(random.below(labels_.size()));
+  const ConditionEffects moment = condition_.effects_on(started_count_, 0);
+  const bool is_lapse =
+      random.uniform() < with_log_odds(individual_.lapse(), moment.lapse_log_odds);
+  const auto random_position = static_cast<int>(random.below(labels_.size()));
   const double thought_s = random.uniform(kMinThoughtS, kMaxThoughtS);
   std::vector<double> strengths;
   for (const engine::FeltFeatures& one : felt_) {
     strengths.push_back(strength(one, moment.noise_factor, random));
   }
   if (options_.question == Question::which_interval) {
-    // A preference for a position, in standard deviations of the noise.
+    // Position bias, in standard deviations of the noise.
     const std::vector<double> bias = individual_.bias(labels_);
     for (std::size_t i = 0; i < strengths.size(); ++i) strengths[i] += noise_ * bias[i];
   }
-  int position = lapses || hears_only_ ? anything : choice_from(strengths);
-  if (subject_.given_function && !hears_only_) position = answer_by_function(random);
-  condition_.after(static_cast<std::size_t>(position), std::nullopt);
+  int position = is_lapse || is_control_ ? random_position : choose_from_strengths(strengths);
+  if (subject_.given_function && !is_control_) position = answer_by_function(random);
+  condition_.record_trial(static_cast<std::size_t>(position), std::nullopt);
   return {position, std::chrono::milliseconds(std::llround(thought_s * 1000.0))};
 }
 

@@ -20,87 +20,86 @@ namespace {
 
 constexpr int kControlBlock = 1;
 
-/// The number of fields of a standard along the order: its own, and one for each level.
+/// The number of fields per standard along the order: one for the standard and one per level.
 int fields_of_standard(const ThresholdOptions& options) {
   return 1 + static_cast<int>(options.track.levels.size());
 }
 
-/// Draws the trials of one participant. A trial's draws depend on its number and on how often it
-/// was interrupted, so that a repeated trial has a new right answer.
+/// Draws one participant's trials. The draws depend on the trial's number and its number of
+/// interruptions, so that a repeated trial has a new right answer.
 class TrialDraw {
  public:
   TrialDraw(const Study& study, const Digest& secret) : study_(study), secret_(secret) {}
 
-  /// Fills a trial at the highest level of a random standard.
-  void fill_easily(Trial& trial, std::string_view purpose, std::uint64_t index,
-                   RandomStream& random) const {
+  /// Sets a trial to the highest level of a random standard.
+  void fill_at_highest_level(Trial& trial, std::string_view purpose, std::uint64_t index,
+                             RandomStream& random) const {
     const std::vector<Standard> standards = standards_of(study_);
-    const auto nth = static_cast<std::size_t>(random.below(standards.size()));
-    const std::size_t top = levels_of(options_of(study_), standards[nth]).size() - 1;
-    trial.level = {0, static_cast<int>(top)};
-    fill(trial, purpose, index, nth, top);
+    const auto standard = static_cast<std::size_t>(random.below(standards.size()));
+    const std::size_t highest_level = levels_of(options_of(study_), standards[standard]).size() - 1;
+    trial.level = {0, static_cast<int>(highest_level)};
+    fill_planes(trial, purpose, index, standard, highest_level);
   }
 
-  /// Fills in the planes and the right answer.
-  void fill(Trial& trial, std::string_view purpose, std::uint64_t index, std::size_t nth_standard,
-            std::size_t level) const {
+  void fill_planes(Trial& trial, std::string_view purpose, std::uint64_t index,
+                   std::size_t standard_index, std::size_t level) const {
     const ThresholdOptions& options = options_of(study_);
     RandomStream random(secret_, purpose, index);
     const auto choices = static_cast<std::uint64_t>(
         options.question == Question::same_different ? 2 : options.intervals);
     const auto target = static_cast<int>(random.below(choices));
-    const bool swapped = random.below(2) == 1;
-    const Plane reference = plane_at(study_, nth_standard, std::nullopt);
-    const Plane signal = plane_at(study_, nth_standard, level);
+    const bool is_swapped = random.below(2) == 1;
+    const Plane reference = plane_at(study_, standard_index, std::nullopt);
+    const Plane signal = plane_at(study_, standard_index, level);
     trial.right = target;
     trial.planes.clear();
     for (int i = 0; i < options.intervals; ++i) {
-      trial.planes.push_back(has_signal(i, target, swapped) ? signal : reference);
-      vary(trial.planes.back(), random);
+      trial.planes.push_back(has_signal(i, target, is_swapped) ? signal : reference);
+      draw_exemplar_and_gain(trial.planes.back(), random);
     }
   }
 
  private:
-  [[nodiscard]] bool has_signal(int interval, int target, bool swapped) const {
+  [[nodiscard]] bool has_signal(int interval, int target, bool is_swapped) const {
     switch (options_of(study_).question) {
       case Question::which_interval:
         return interval == target;
       case Question::odd_one_out:
-        return (interval == target) != swapped;  // either kind is odd equally often
+        return (interval == target) != is_swapped;  // each kind is odd equally often
       case Question::same_different:
-        return target == 0 ? swapped : (interval == 1) != swapped;
+        return target == 0 ? is_swapped : (interval == 1) != is_swapped;
     }
     return false;
   }
 
-  /// Draws exemplar and gain.
-  void vary(Plane& plane, RandomStream& random) const {
+  void draw_exemplar_and_gain(Plane& plane, RandomStream& random) const {
     const ThresholdOptions& options = options_of(study_);
-    const auto exemplar_of = [&](const StimulusIndex& of) {
-      const auto images = study_.classes[static_cast<std::size_t>(of.class_index)].images.size();
+    const auto draw_exemplar = [&](const StimulusIndex& stimulus) {
+      const auto images =
+          study_.classes[static_cast<std::size_t>(stimulus.class_index)].images.size();
       return static_cast<int>(random.below(images));
     };
-    plane.field.exemplar = exemplar_of(plane.field);
-    if (plane.mix) plane.mix->other.exemplar = exemplar_of(plane.mix->other);
+    plane.field.exemplar = draw_exemplar(plane.field);
+    if (plane.mix) plane.mix->other.exemplar = draw_exemplar(plane.mix->other);
     const double rove_db = draw_rove_db(options.rove_db, random);
     if (plane.blank || options.rove_db == 0.0) return;
     plane.gain_db += rove_db;
-    if (options.along != Along::gain) plane.gain_db -= options.rove_db / 2.0;
+    if (options.along != LevelQuantity::gain) plane.gain_db -= options.rove_db / 2.0;
   }
 
   const Study& study_;
   Digest secret_;
 };
 
-/// The places of the tracks' trials, then those of the controls.
-Schedule places_of(const Study& study) {
+/// A schedule with the places of the tracks' trials, then the places of the control trials.
+Schedule empty_schedule(const Study& study) {
   const ThresholdOptions& options = options_of(study);
-  const int of_tracks = study.task->scored_trials(study) + options.catch_trials;
+  const int track_trials = study.task->scored_trials(study) + options.catch_trials;
   Schedule schedule;
-  for (int i = 0; i < of_tracks + options.control_trials; ++i) {
+  for (int i = 0; i < track_trials + options.control_trials; ++i) {
     Trial& trial = schedule.trials.emplace_back();
     trial.place.trial = i + 1;
-    if (i < of_tracks) continue;
+    if (i < track_trials) continue;
     trial.place.block = kControlBlock;
     trial.place.hand_off = true;
     trial.role = Role::control;
@@ -113,7 +112,7 @@ Schedule places_of(const Study& study) {
 class ThresholdOrder final : public Order {
  public:
   ThresholdOrder(const Study& study, const ScheduleDraw& draw)
-      : Order(places_of(study), draw.secret),
+      : Order(empty_schedule(study), draw.secret),
         study_(study),
         trials_(study_, block_secret(draw)),
         controls_(block_secret(draw)),
@@ -123,20 +122,21 @@ class ThresholdOrder final : public Order {
     const ThresholdOptions& options = options_of(study_);
     const auto tracks_each = static_cast<std::size_t>(options.tracks_each);
     constexpr std::uint64_t kMaxTrials = 1U << 20U;
-    const auto times = interruptions_.find(scheduled.place.trial);
-    const auto index = static_cast<std::uint64_t>(scheduled.place.trial) +
-                       kMaxTrials * (times == interruptions_.end() ? 0 : times->second);
+    const auto interruptions = interruptions_.find(scheduled.place.trial);
+    const auto index =
+        static_cast<std::uint64_t>(scheduled.place.trial) +
+        kMaxTrials * (interruptions == interruptions_.end() ? 0 : interruptions->second);
     Trial trial = scheduled;
     const std::optional<procedures::Presentation> next = block_.next();
     if (next) {
       trial.role = next->is_catch ? Role::catch_trial : Role::scored;
       trial.level = {static_cast<int>(next->track) + 1, static_cast<int>(next->level)};
-      trials_.fill(trial, "threshold: trial", index, next->track / tracks_each, next->level);
+      trials_.fill_planes(trial, "threshold: trial", index, next->track / tracks_each, next->level);
       return trial;
     }
     trial.role = Role::control;
     RandomStream random(controls_, "threshold: standard", index);
-    trials_.fill_easily(trial, "threshold: trial", index, random);
+    trials_.fill_at_highest_level(trial, "threshold: trial", index, random);
     return trial;
   }
 
@@ -157,7 +157,7 @@ std::string question_key(const ThresholdOptions& options) {
   if (options.question == Question::odd_one_out) return "threshold_odd";
   if (options.question == Question::same_different) return "threshold_same";
   if (options.task == Task::detection) return "threshold_texture";
-  return options.along == Along::pitch ? "threshold_coarser" : "threshold_stronger";
+  return options.along == LevelQuantity::pitch ? "threshold_coarser" : "threshold_stronger";
 }
 
 class ThresholdTask final : public study::Task {
@@ -176,14 +176,15 @@ class ThresholdTask final : public study::Task {
                                     "method; remove the others",
                                     study.methods.size()));
     }
-    if (options_.along == Along::order && study.methods.front().method != engine::Method::fixed) {
+    if (options_.along == LevelQuantity::order &&
+        study.methods.front().method != engine::Method::fixed) {
       file.refuse_below("/methods/0/name",
                         "must be \"fixed\" for levels along the order, which no other method has");
     }
     check_section(file, study);
     check_registered(file, study);
   }
-  std::string in_clear() const override { return section_json(options_); }
+  std::string plaintext_settings() const override { return section_json(options_); }
   std::string rule(const Study& /*study*/) const override {
     return "touchtrial threshold 2: levels by the procedure's answers, ties within 1e-9 to the "
            "smallest; catch trials dealt evenly to tracks, at their highest level; draws by "
@@ -204,18 +205,19 @@ class ThresholdTask final : public study::Task {
   }
   int answered_catches(const Study& /*study*/) const override { return options_.catch_trials; }
   Fields fields(const Study& study) const override {
-    return {
-        .methods = methods(study.methods.front()), .mixtures = mixtures(study), .levelled = true};
+    return {.methods = methods(study.methods.front()),
+            .mixtures = mixtures(study),
+            .has_equal_heights = true};
   }
 
-  Ask ask(const Study& study, const Place& place) const override {
-    Ask ask{.exploring = InContact{options_.interval_s, options_.windows},
-            .planes = options_.intervals,
-            .question = Choose{question_key(options_), choices()},
-            .confidence_levels = study.session.confidence_levels,
-            .feedback = options_.feedback && !place.hand_off};
-    if (place.hand_off) ask.exploring = Played{options_.interval_s};
-    return ask;
+  TrialQuestion ask(const Study& study, const Place& place) const override {
+    TrialQuestion question{.exploring = TimedContact{options_.interval_s, options_.windows},
+                           .planes = options_.intervals,
+                           .question = ChoiceQuestion{question_key(options_), choices()},
+                           .confidence_levels = study.session.confidence_levels,
+                           .feedback = options_.feedback && !place.hand_off};
+    if (place.hand_off) question.exploring = PlayedStroke{options_.interval_s};
+    return question;
   }
   std::unique_ptr<Order> order(const Study& study, const ScheduleDraw& draw) const override {
     return std::make_unique<ThresholdOrder>(study, draw);
@@ -233,15 +235,16 @@ class ThresholdTask final : public study::Task {
       RandomStream random(block_secret(draw), "threshold: practice standard", index);
       practice.trials[i].place.trial = static_cast<int>(i) + 1;
       practice.trials[i].role = Role::practice;
-      trials.fill_easily(practice.trials[i], "threshold: practice", index, random);
+      trials.fill_at_highest_level(practice.trials[i], "threshold: practice", index, random);
     }
     return practice;
   }
-  StimulusIndex about(const Study& study, const Level& level) const override {
+  StimulusIndex threshold_field(const Study& study, const Level& level) const override {
     const int standard = std::max(0, level.track - 1) / options_.tracks_each;
-    const auto nth = std::min(static_cast<std::size_t>(standard), standards_of(study).size() - 1);
-    const auto top = options_.track.levels.size() - 1;
-    return plane_at(study, nth, std::min(static_cast<std::size_t>(std::max(0, level.level)), top))
+    const auto index = std::min(static_cast<std::size_t>(standard), standards_of(study).size() - 1);
+    const auto highest_level = options_.track.levels.size() - 1;
+    return plane_at(study, index,
+                    std::min(static_cast<std::size_t>(std::max(0, level.level)), highest_level))
         .field;
   }
 
@@ -252,15 +255,15 @@ class ThresholdTask final : public study::Task {
     if (options_.intervals == 3) all.push_back({"third"});
     return all;
   }
-  /// Along the order, every level needs its own field, and so its own method.
-  /// \param own  the study file's method, or one that this function returned
-  [[nodiscard]] std::vector<StudyMethod> methods(const StudyMethod& own) const {
-    if (options_.along != Along::order) return {own};
+  /// If levels lie along the order, every level needs its own field and therefore its own method.
+  /// \param base  the study file's method, or a method that this function returned
+  [[nodiscard]] std::vector<StudyMethod> methods(const StudyMethod& base) const {
+    if (options_.along != LevelQuantity::order) return {base};
     std::vector<StudyMethod> all;
     const auto add = [&](double order) {
-      StudyMethod& made = all.emplace_back(own);
-      made.order = std::min(order, std::nextafter(1.0, 0.0));  // `check` refuses larger ones
-      made.label = fmt::format("order {}-{:.5f}", all.size(), made.order);
+      StudyMethod& method = all.emplace_back(base);
+      method.order = std::min(order, std::nextafter(1.0, 0.0));  // `check` refuses larger orders
+      method.label = fmt::format("order {}-{:.5f}", all.size(), method.order);
     };
     for (const double standard : options_.standards) {
       add(standard);
@@ -272,14 +275,14 @@ class ThresholdTask final : public study::Task {
   }
   [[nodiscard]] std::vector<Plane> mixtures(const Study& study) const {
     std::vector<Plane> all;
-    if (options_.along != Along::blend) return all;
+    if (options_.along != LevelQuantity::blend) return all;
     for (std::size_t level = 0; level < options_.track.levels.size(); ++level) {
-      const Plane mixed = plane_at(study, 0, level);
+      const Plane mixture = plane_at(study, 0, level);
       for (std::size_t a = 0; a < study.classes[0].images.size(); ++a) {
         for (std::size_t b = 0; b < study.classes[1].images.size(); ++b) {
-          Plane& one = all.emplace_back(mixed);
-          one.field.exemplar = static_cast<int>(a);
-          one.mix->other.exemplar = static_cast<int>(b);
+          Plane& plane = all.emplace_back(mixture);
+          plane.field.exemplar = static_cast<int>(a);
+          plane.mix->other.exemplar = static_cast<int>(b);
         }
       }
     }
@@ -321,7 +324,7 @@ const Protocol& protocol() {
 
 std::vector<Standard> standards_of(const Study& study) {
   const ThresholdOptions& options = options_of(study);
-  const std::size_t classes = options.along == Along::blend ? 1 : study.classes.size();
+  const std::size_t classes = options.along == LevelQuantity::blend ? 1 : study.classes.size();
   std::vector<Standard> all;
   for (std::size_t c = 0; c < classes; ++c) {
     for (const double value : options.standards) all.push_back({static_cast<int>(c), value});
@@ -333,40 +336,40 @@ std::string words_of(const Study& study, const Standard& standard) {
   const ThresholdOptions& options = options_of(study);
   const std::string& label = study.classes[static_cast<std::size_t>(standard.class_index)].label;
   switch (options.along) {
-    case Along::gain:
+    case LevelQuantity::gain:
       if (options.task == Task::detection) return label;
       return fmt::format("{}, standard {} dB", label, number_text(standard.value));
-    case Along::order:
+    case LevelQuantity::order:
       return fmt::format("{}, order {}", label, number_text(standard.value));
-    case Along::blend:
+    case LevelQuantity::blend:
       return label + " to " + study.classes.back().label;
-    case Along::pitch:
+    case LevelQuantity::pitch:
       break;
   }
   return label;
 }
 
-Plane plane_at(const Study& study, std::size_t nth_standard, std::optional<std::size_t> level) {
+Plane plane_at(const Study& study, std::size_t standard_index, std::optional<std::size_t> level) {
   const ThresholdOptions& options = options_of(study);
-  const Standard standard = standards_of(study)[nth_standard];
+  const Standard standard = standards_of(study)[standard_index];
   Plane plane;
   plane.field.class_index = standard.class_index;
-  const double at = level ? options.track.levels[*level] : 0.0;
-  const double amount = level ? comparison_at(options, standard, at) : standard.value;
+  const double amount =
+      level ? comparison_at(options, standard, options.track.levels[*level]) : standard.value;
   switch (options.along) {
-    case Along::gain:
+    case LevelQuantity::gain:
       plane.blank = options.task == Task::detection && !level;
       plane.gain_db = plane.blank ? 0.0 : amount;
       break;
-    case Along::pitch:
+    case LevelQuantity::pitch:
       plane.pitch = level ? amount : 1.0;
       break;
-    case Along::order:
-      plane.field.method =
-          static_cast<int>(nth_standard % options.standards.size()) * fields_of_standard(options) +
-          (level ? 1 + static_cast<int>(*level) : 0);
+    case LevelQuantity::order:
+      plane.field.method = static_cast<int>(standard_index % options.standards.size()) *
+                               fields_of_standard(options) +
+                           (level ? 1 + static_cast<int>(*level) : 0);
       break;
-    case Along::blend:
+    case LevelQuantity::blend:
       plane.mix = Mix{{1, 0, 0}, level ? std::min(amount, 1.0) : 0.0};
       break;
   }
@@ -375,12 +378,12 @@ Plane plane_at(const Study& study, std::size_t nth_standard, std::optional<std::
 
 std::vector<double> levels_of(const ThresholdOptions& options, const Standard& standard) {
   constexpr double kRounding = 1e-9;
-  std::vector<double> own = options.track.levels;
-  if (options.along != Along::gain) return own;
-  std::erase_if(own, [&](double level) {
+  std::vector<double> levels = options.track.levels;
+  if (options.along != LevelQuantity::gain) return levels;
+  std::erase_if(levels, [&](double level) {
     return comparison_at(options, standard, level) + options.rove_db / 2.0 > kRounding;
   });
-  return own;
+  return levels;
 }
 
 procedures::BlockSettings block_settings(const Study& study) {
@@ -402,16 +405,17 @@ int missing_catch_trials(const Study& study) {
   const ThresholdOptions& options = options_of(study);
   if (options.question == Question::same_different) return 0;
   const procedures::BlockSettings block = block_settings(study);
-  int of_each = 0;
+  int missing_per_track = 0;
   for (const procedures::TrackSettings& track : block.tracks) {
-    const int own = track.procedure == "constant-stimuli"
-                        ? track.trials / static_cast<int>(track.levels.size())
-                        : 0;
-    const int wanted = std::max(kMinCatchTrials, (track.trials + 9) / 10);
-    of_each = std::max(of_each, std::min(wanted, track.trials / 2) - own);
+    const int trials_at_highest = track.procedure == "constant-stimuli"
+                                      ? track.trials / static_cast<int>(track.levels.size())
+                                      : 0;
+    const int required = std::max(kMinCatchTrials, (track.trials + 9) / 10);
+    missing_per_track =
+        std::max(missing_per_track, std::min(required, track.trials / 2) - trials_at_highest);
   }
-  const int of_all = of_each * static_cast<int>(block.tracks.size());
-  return std::max(0, of_all - block.catch_trials);
+  const int total = missing_per_track * static_cast<int>(block.tracks.size());
+  return std::max(0, total - block.catch_trials);
 }
 
 Digest block_secret(const ScheduleDraw& draw) {
@@ -427,13 +431,13 @@ double comparison_at(const ThresholdOptions& options, const Standard& standard, 
   if (options.task == Task::detection) return level;
   const double change = std::pow(10.0, level / kDbPerDecade);
   switch (options.along) {
-    case Along::gain:
+    case LevelQuantity::gain:
       return standard.value + kDbPerDecade * std::log10(1.0 + change);
-    case Along::order:
+    case LevelQuantity::order:
       return standard.value * (1.0 + change);
-    case Along::blend:
+    case LevelQuantity::blend:
       return change;
-    case Along::pitch:
+    case LevelQuantity::pitch:
       break;
   }
   return 1.0 + change;

@@ -20,10 +20,10 @@ constexpr auto kQuestionNames =
     std::to_array<Named<Question>>({{"which-interval", Question::which_interval},
                                     {"odd-one-out", Question::odd_one_out},
                                     {"same-different", Question::same_different}});
-constexpr auto kAlongNames = std::to_array<Named<Along>>({{"gain", Along::gain},
-                                                          {"pitch", Along::pitch},
-                                                          {"order", Along::order},
-                                                          {"blend", Along::blend}});
+constexpr auto kAlongNames = std::to_array<Named<LevelQuantity>>({{"gain", LevelQuantity::gain},
+                                                                  {"pitch", LevelQuantity::pitch},
+                                                                  {"order", LevelQuantity::order},
+                                                                  {"blend", LevelQuantity::blend}});
 constexpr auto kShapeNames =
     std::to_array<Named<procedures::Shape>>({{"weibull", procedures::Shape::weibull},
                                              {"logistic", procedures::Shape::logistic},
@@ -31,9 +31,8 @@ constexpr auto kShapeNames =
 
 constexpr std::size_t kMaxValues = 200;
 constexpr NumberRange kLevelRange{-200.0, 40.0};
-constexpr double kMaxTables = 20e6;  ///< numbers of all tracks' posteriors
+constexpr double kMaxTables = 20e6;  ///< maximum size of all tracks' posterior tables
 
-/// Describes an ascending list of values.
 void describe_list(ValueIo& io, std::vector<double>& values, const NumberRange& range) {
   io.list(values, {.min = 1, .max = kMaxValues},
           [&range](ValueIo& item, double& value) { item.number(value, range); });
@@ -44,14 +43,15 @@ void describe_list(ValueIo& io, std::vector<double>& values, const NumberRange& 
   });
 }
 
-/// Describes an object with the values from, from + step, ..
+/// Describes an object {"from", "to", "step"} that stands for the values from, from + step, ..
 void describe_steps(ObjectIo& io, std::vector<double>& values, const NumberRange& range) {
   double from = 0.0;
   double to = 0.0;
   double step = 0.0;
   io.number("from", from, range, {.meaning = "first value", .required = true});
-  io.number("to", to, range, {.meaning = "no value is above", .required = true});
-  io.number("step", step, {0.0, 1000.0, true}, {.meaning = "between two values", .required = true});
+  io.number("to", to, range, {.meaning = "largest possible value", .required = true});
+  io.number("step", step, {0.0, 1000.0, true},
+            {.meaning = "distance between values", .required = true});
   io.rule([&](const JsonValue& place, const JsonObject& /*object*/) {
     const double steps = std::floor((to - from) / step + 1e-9);
     if (to < from) place.refuse("has \"to\" less than \"from\"; swap them");
@@ -65,8 +65,8 @@ void describe_steps(ObjectIo& io, std::vector<double>& values, const NumberRange
 
 /// Describes values as a list, or as {"from", "to", "step"}.
 void describe_values(ObjectIo& io, std::string_view key, std::vector<double>& values,
-                     const NumberRange& range, const KeyInfo& about) {
-  io.member(key, about, true, [&](ValueIo& value) {
+                     const NumberRange& range, const KeyInfo& info) {
+  io.member(key, info, true, [&](ValueIo& value) {
     const ValueIo::Form forms[] = {
         {[](const JsonValue& place) { return place.is_object(); },
          [&](ValueIo& one) {
@@ -94,17 +94,16 @@ void describe_windows(ObjectIo& io, HandRange& windows) {
   });
 }
 
-/// Describes the first level, by its value.
 void describe_first_level(ObjectIo& io, procedures::TrackSettings& track) {
-  std::optional<double> wanted;
-  if (!track.levels.empty()) wanted = track.levels[track.up_down.first_level];
+  std::optional<double> first_level;
+  if (!track.levels.empty()) first_level = track.levels[track.up_down.first_level];
   io.number(
-      "first_level", wanted, kLevelRange,
+      "first_level", first_level, kLevelRange,
       {.meaning = "level of the first trial, one of the levels", .default_text = "the highest"});
   io.rule([&](const JsonValue& place, const JsonObject& object) {
     if (!object.find("first_level")) return;
     const auto found = std::ranges::find_if(
-        track.levels, [&](double level) { return std::abs(level - *wanted) < 1e-9; });
+        track.levels, [&](double level) { return std::abs(level - *first_level) < 1e-9; });
     if (found == track.levels.end()) {
       place.refuse_below("/first_level", "is not one of the levels; use one of them");
     }
@@ -120,12 +119,12 @@ void describe_up_down(ObjectIo& io, procedures::TrackSettings& track) {
   io.list("steps_down", rule.steps_down, {.min = 1, .max = kMaxValues},
           {"in steps of the list of levels: the next entry after each reversal, then the last one"},
           [](ValueIo& item, int& step) { item.integer(step, 1, kMaxValues); });
-  io.integer("up_for_one_down", rule.up_for_one_down, 1, 100, {"a step up in steps down"});
+  io.integer("up_for_one_down", rule.up_for_one_down, 1, 100, {"size of a step up, in steps down"});
   describe_first_level(io, track);
 }
 
 void describe_grid(ObjectIo& io, procedures::ParameterGrid& grid) {
-  io.choice("shape", grid.shape, kShapeNames, {"of the psychometric function"});
+  io.choice("shape", grid.shape, kShapeNames, {"shape of the psychometric function"});
   describe_values(io, "thresholds", grid.thresholds, kLevelRange,
                   {.meaning = "thresholds, ascending", .default_text = "the levels"});
   describe_values(io, "slopes", grid.slopes, {0.0, 1000.0, true}, {"slopes, ascending"});
@@ -134,7 +133,7 @@ void describe_grid(ObjectIo& io, procedures::ParameterGrid& grid) {
 
 void describe_practice(ObjectIo& io, ThresholdOptions& options) {
   io.integer("trials", options.practice_trials, 0, 100,
-             {.meaning = "of a round; 0: no practice", .required = true});
+             {.meaning = "trials per round; 0: no practice", .required = true});
   io.rule([&options](const JsonValue& /*place*/, const JsonObject& /*object*/) {
     options.practice_criterion = options.practice_trials;
   });
@@ -147,10 +146,9 @@ void describe_practice(ObjectIo& io, ThresholdOptions& options) {
                        fmt::format("is {}, must be from 0 to {}", options.practice_criterion,
                                    options.practice_trials));
   });
-  io.integer("rounds", options.practice_rounds, 1, 10, {"rounds at most"});
+  io.integer("rounds", options.practice_rounds, 1, 10, {"maximum number of rounds"});
 }
 
-/// Describes task, question and intervals.
 void describe_question(ObjectIo& io, ThresholdOptions& options) {
   io.choice("task", options.task, kTaskNames,
             {.meaning = "`detection`: a texture or the same wall without it; `discrimination`: a "
@@ -174,12 +172,13 @@ void describe_question(ObjectIo& io, ThresholdOptions& options) {
     if (options.question == Question::same_different && options.intervals != 2) {
       place.refuse_below("/intervals", "must be 2 for the question same-different");
     }
-    if (options.task == Task::detection && options.along != Along::gain) {
+    if (options.task == Task::detection && options.along != LevelQuantity::gain) {
       place.refuse_below("/along",
                          "must be \"gain\" for the task detection; set it, or choose the task "
                          "discrimination");
     }
-    const bool has_strength = options.along == Along::gain || options.along == Along::pitch;
+    const bool has_strength =
+        options.along == LevelQuantity::gain || options.along == LevelQuantity::pitch;
     if (!has_strength && options.question == Question::which_interval) {
       place.refuse_below("/along",
                          "has no direction, which the question which-interval needs; use the "
@@ -188,8 +187,8 @@ void describe_question(ObjectIo& io, ThresholdOptions& options) {
   });
 }
 
-/// Sets defaults that depend on procedure and levels.
-void set_usual_rules(ThresholdOptions& options) {
+/// Sets the defaults that depend on procedure and levels.
+void set_procedure_defaults(ThresholdOptions& options) {
   procedures::TrackSettings& track = options.track;
   track.up_down.first_level = track.levels.size() - 1;
   if (track.procedure == "weighted-up-down") {
@@ -207,19 +206,19 @@ void describe_procedure(ObjectIo& io, ThresholdOptions& options) {
   procedures::TrackSettings& track = options.track;
   std::vector<std::string_view> names;
   for (const auto& kind : procedures::procedure_kinds()) names.push_back(kind.name);
-  auto at = static_cast<std::size_t>(std::ranges::find(names, track.procedure) - names.begin());
+  auto index = static_cast<std::size_t>(std::ranges::find(names, track.procedure) - names.begin());
   io.member("procedure", {"the rule that chooses the next level: [procedures](#procedures)"}, true,
-            [&](ValueIo& value) { value.choice(at, names); });
-  track.procedure = names.at(at);
+            [&](ValueIo& value) { value.choice(index, names); });
+  track.procedure = names.at(index);
   io.rule([&](const JsonValue& place, const JsonObject& /*object*/) {
     if (options.question == Question::same_different && track.procedure != "constant-stimuli") {
       place.refuse_below("/question",
                          "has no fixed guess rate, which adaptive procedures need; set "
                          "/threshold/procedure to \"constant-stimuli\"");
     }
-    set_usual_rules(options);
+    set_procedure_defaults(options);
   });
-  io.integer("trials", track.trials, 1, 2000, {"of each track"});
+  io.integer("trials", track.trials, 1, 2000, {"trials per track"});
   io.integer("tracks", options.tracks_each, 1, 8,
              {"tracks for each class and standard, interleaved; at most 8 in total"});
   io.boolean("blocked", track.blocked,
@@ -234,9 +233,9 @@ void describe_procedure(ObjectIo& io, ThresholdOptions& options) {
 }
 
 void describe_standards(ObjectIo& io, ThresholdOptions& options) {
-  const bool is_order = options.along == Along::order;
+  const bool is_order = options.along == LevelQuantity::order;
   const bool has_standards =
-      options.task == Task::discrimination && (options.along == Along::gain || is_order);
+      options.task == Task::discrimination && (options.along == LevelQuantity::gain || is_order);
   NumberRange range{-100.0, 1.0};
   if (has_standards) {
     range = is_order ? NumberRange{0.0, 1.0, true, true} : NumberRange{-100.0, 0.0};
@@ -294,7 +293,7 @@ std::string_view name_of(Task task) {
 std::string_view name_of(Question question) {
   return name_in(kQuestionNames, question);
 }
-std::string_view name_of(Along along) {
+std::string_view name_of(LevelQuantity along) {
   return name_in(kAlongNames, along);
 }
 std::string_view name_of(procedures::Shape shape) {
@@ -303,7 +302,7 @@ std::string_view name_of(procedures::Shape shape) {
 
 ThresholdOptions read_section(const JsonValue& section) {
   ThresholdOptions options;
-  read_described(section, [&options](ObjectIo& io) { describe(io, options); });
+  read_settings(section, [&options](ObjectIo& io) { describe(io, options); });
   return options;
 }
 
@@ -334,49 +333,49 @@ void check_section(const JsonValue& file, const Study& study) {
                                   tracks, procedures::kMaxTracks));
   }
   for (const Standard& standard : standards) {
-    const std::size_t own = levels_of(options, standard).size();
-    const bool may_clip = options.task == Task::discrimination;
-    if (own < (may_clip ? 1 : options.track.levels.size())) {
+    const std::size_t usable_levels = levels_of(options, standard).size();
+    const bool may_drop_levels = options.task == Task::discrimination;
+    if (usable_levels < (may_drop_levels ? 1 : options.track.levels.size())) {
       refuse("/levels",
              fmt::format("exceed the pack's gain, which is the maximum, for {}{}; lower "
                          "them{}",
                          words_of(study, standard), options.rove_db > 0.0 ? " with its rove" : "",
-                         may_clip ? " or the standard" : ""));
+                         may_drop_levels ? " or the standard" : ""));
     }
     const double max = comparison_at(options, standard, options.track.levels.back());
-    if (options.along == Along::order && max >= 1.0) {
+    if (options.along == LevelQuantity::order && max >= 1.0) {
       refuse("/levels", fmt::format("reach order {:.3f}, but orders must be below 1; lower the "
                                     "highest level or the standard",
                                     max));
     }
-    if (options.along == Along::blend && max > 1.0 + 1e-9) {
+    if (options.along == LevelQuantity::blend && max > 1.0 + 1e-9) {
       refuse("/levels", "exceed a share of 1 of the second texture; end at 0 dB");
     }
-    if (options.along == Along::pitch && max > 10.0) {
+    if (options.along == LevelQuantity::pitch && max > 10.0) {
       refuse("/levels", "reach more than ten times the pitch; lower the highest level");
     }
   }
-  const double tables = 2.0 * static_cast<double>(tracks) *
-                        static_cast<double>(options.track.levels.size()) *
-                        static_cast<double>(options.track.grid.thresholds.size()) *
-                        static_cast<double>(options.track.grid.slopes.size()) *
-                        static_cast<double>(options.track.grid.lapses.size());
-  if (tables > kMaxTables) {
+  const double table_size = 2.0 * static_cast<double>(tracks) *
+                            static_cast<double>(options.track.levels.size()) *
+                            static_cast<double>(options.track.grid.thresholds.size()) *
+                            static_cast<double>(options.track.grid.slopes.size()) *
+                            static_cast<double>(options.track.grid.lapses.size());
+  if (table_size > kMaxTables) {
     refuse("/grid", fmt::format("needs tables of {:.0f} million numbers for all tracks, more than "
                                 "{:.0f}; use fewer levels or values",
-                                tables / 1e6, kMaxTables / 1e6));
+                                table_size / 1e6, kMaxTables / 1e6));
   }
   try {
     static_cast<void>(procedures::Block(block_settings(study), Digest{}));
   } catch (const std::invalid_argument& error) {
     refuse("", std::string(error.what()) + "; change the section's numbers");
   }
-  if (options.along == Along::blend && study.classes.size() != 2) {
+  if (options.along == LevelQuantity::blend && study.classes.size() != 2) {
     file.refuse_below("/classes",
                       fmt::format("has {} entries, but levels along blend need two textures",
                                   study.classes.size()));
   }
-  if (options.along == Along::blend) {
+  if (options.along == LevelQuantity::blend) {
     const auto mixtures = study.classes.front().images.size() * study.classes.back().images.size() *
                           options.track.levels.size();
     if (mixtures > kMaxValues) {

@@ -1,4 +1,5 @@
-/// \file The study file's "threshold". Private to protocols/threshold/study.
+/// \file Reads and checks the section "threshold" of the study file. Private to
+/// protocols/threshold/study.
 #pragma once
 
 #include "core/strict_json.hpp"
@@ -9,10 +10,10 @@
 namespace touchtrial::study::threshold {
 
 /// Reads the section.
-/// \throws StudyError with the place of a value that is not accepted
+/// \throws StudyError with the place of an invalid value
 [[nodiscard]] ThresholdOptions read_section(const JsonValue& section);
 
-/// The schema in the form of annotated_section().
+/// The section's schema in the format of annotated_section().
 [[nodiscard]] std::string section_schema();
 
 /// Checks the section against the rest of the study: classes, methods, trials, limits.

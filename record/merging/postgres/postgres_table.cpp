@@ -14,9 +14,9 @@
 namespace touchtrial::merging {
 namespace {
 
-// The server itself records who sent a row, and refuses an incomplete one. Bundles are compressed
-// already. One statement, because two stations may start at once.
-constexpr const char* kMakeTable = R"sql(DO $$ BEGIN
+// The server itself records the sender of a row, and refuses an incomplete one. It does not
+// compress bundles again. It is one statement, because two stations may start at once.
+constexpr const char* kCreateTable = R"sql(DO $$ BEGIN
   PERFORM pg_advisory_xact_lock(hashtextextended('touchtrial_bundles', 0));
   CREATE TABLE IF NOT EXISTS touchtrial_bundles(
     bundle      BIGINT GENERATED ALWAYS AS IDENTITY PRIMARY KEY,
@@ -40,22 +40,25 @@ class PostgresTable final : public BundleTable {
  public:
   explicit PostgresTable(const std::string& address) : server_(connection_options(address)) {}
 
-  [[nodiscard]] const std::string& shown() const override { return server_.shown(); }
+  [[nodiscard]] const std::string& address() const override { return server_.address(); }
 
   [[nodiscard]] std::vector<BundleRow> rows() override {
-    const auto tables = server_.ask("SELECT WHERE to_regclass('touchtrial_bundles') IS NOT NULL");
+    const auto tables =
+        server_.execute("SELECT WHERE to_regclass('touchtrial_bundles') IS NOT NULL");
     exists_ = PQntuples(tables.get()) > 0;
     if (!exists_) return {};
-    // In the order of BundleRow.
-    const SqlRows found = server_.ask(
+    // The columns are in the order of BundleRow's members.
+    const SqlRows found = server_.execute(
         "SELECT bundle::text, sent_by::text, encode(station, 'hex'), encode(seal, 'hex'), "
         "first_event::text, end_event::text, encode(head, 'hex'), keys::text "
         "FROM touchtrial_bundles ORDER BY bundle");
     std::vector<BundleRow> rows;
     for (int i = 0; i < PQntuples(found.get()); ++i) {
       const auto text = [&](int column) { return text_of(value_at(found, i, column)); };
-      const auto number = [&](int column) { return known(number_in<std::int64_t>(text(column))); };
-      const auto digest = [&](int column) { return known(digest_from_hex(text(column))); };
+      const auto number = [&](int column) {
+        return require(number_in<std::int64_t>(text(column)));
+      };
+      const auto digest = [&](int column) { return require(digest_from_hex(text(column))); };
       rows.push_back(
           {number(0), text(1), digest(2), digest(3), number(4), number(5), digest(6), number(7)});
     }
@@ -63,23 +66,24 @@ class PostgresTable final : public BundleTable {
   }
 
   void add(const BundleRow& row, ByteView chain, ByteView session) override {
-    // A role that may only add rows does not need the right to create tables.
-    if (!exists_) server_.ask(kMakeTable);
+    // If the table exists, the role needs no right to create tables.
+    if (!exists_) server_.execute(kCreateTable);
     exists_ = true;
     const std::array<Digest, 2> halves = {sha256(chain), sha256(session)};
     const Digest digest = sha256(bytes_of(text_of(halves[0]) + text_of(halves[1])));
-    server_.ask(fmt::format("INSERT INTO touchtrial_bundles(station, seal, head, digest, chain, "
-                            "session, first_event, end_event, keys) VALUES($1, $2, $3, $4, $5, $6, "
-                            "{}, {}, {}) ON CONFLICT DO NOTHING",
-                            row.first, row.end, row.keys),
-                {row.station, row.seal, row.head, digest, chain, session});
+    server_.execute(
+        fmt::format("INSERT INTO touchtrial_bundles(station, seal, head, digest, chain, "
+                    "session, first_event, end_event, keys) VALUES($1, $2, $3, $4, $5, $6, "
+                    "{}, {}, {}) ON CONFLICT DO NOTHING",
+                    row.first, row.end, row.keys),
+        {row.station, row.seal, row.head, digest, chain, session});
   }
 
-  [[nodiscard]] Bytes half(std::int64_t number, Half which) override {
-    const SqlRows rows = server_.ask(fmt::format(
+  [[nodiscard]] Bytes half(std::int64_t number, Half half) override {
+    const SqlRows rows = server_.execute(fmt::format(
         "SELECT {0} FROM touchtrial_bundles WHERE bundle = {1} AND octet_length({0}) <= "
         "{2}",
-        which == Half::chain ? "chain" : "session", number, kMaxBundleBytes));
+        half == Half::chain ? "chain" : "session", number, kMaxBundleBytes));
     if (PQntuples(rows.get()) != 1) return {};
     const ByteView bytes = value_at(rows, 0, 0);
     return {bytes.begin(), bytes.end()};
@@ -87,11 +91,12 @@ class PostgresTable final : public BundleTable {
 
  private:
   template <typename Value>
-  [[nodiscard]] Value known(const std::optional<Value>& value) const {
+  [[nodiscard]] Value require(const std::optional<Value>& value) const {
     if (value) return *value;
-    throw record::DamagedStore(shown() +
-                               ": the table of bundles holds what Touchtrial did not write; make a "
-                               "new database, and sync all stations to it");
+    throw record::DamagedStore(
+        address() +
+        ": the table of bundles contains rows that Touchtrial did not write; "
+        "create a new database, and sync all stations to it");
   }
 
   ServerConnection server_;

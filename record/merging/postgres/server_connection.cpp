@@ -16,32 +16,33 @@
 namespace touchtrial::merging {
 namespace {
 
-/// Does not pass on libpq's message, which repeats the address.
-ConnectionOptions parsed(const std::string& where) {
-  const bool ours = where.starts_with("postgresql://") || where.starts_with("postgres://");
+/// Parses an address. Errors omit libpq's message, which repeats the address.
+ConnectionOptions parse_address(const std::string& address) {
+  const bool is_postgres =
+      address.starts_with("postgresql://") || address.starts_with("postgres://");
   const std::unique_ptr<PQconninfoOption, decltype(&PQconninfoFree)> all(
-      ours ? PQconninfoParse(where.c_str(), nullptr) : nullptr, PQconninfoFree);
+      is_postgres ? PQconninfoParse(address.c_str(), nullptr) : nullptr, PQconninfoFree);
   if (!all) {
     throw UsageError(
         "this is not the address of a PostgreSQL database; write postgresql://USER@HOST/DATABASE");
   }
   ConnectionOptions options;
-  for (const PQconninfoOption* one = all.get(); one->keyword != nullptr; ++one) {
-    if (one->val != nullptr) options[one->keyword] = one->val;
+  for (const PQconninfoOption* option = all.get(); option->keyword != nullptr; ++option) {
+    if (option->val != nullptr) options[option->keyword] = option->val;
   }
   return options;
 }
 
-/// If a number is given (hostaddr), libpq connects to it, and uses the name only for the
+/// If an IP address is given (hostaddr), libpq connects to it, and uses the name only for the
 /// certificate. A list of servers counts as another machine.
-bool is_this_machine(const std::string& host, const std::string& number) {
-  const std::string& place = number.empty() ? host : number;
+bool is_this_machine(const std::string& host, const std::string& ip_address) {
+  const std::string& place = ip_address.empty() ? host : ip_address;
   const bool is_socket = place.empty() || place.front() == '/' || place.front() == '@';
   const bool is_list = place.find(',') != std::string::npos;
   return !is_list && (is_socket || place == "localhost" || place == "127.0.0.1" || place == "::1");
 }
 
-/// The kernel counts them only for TCP; a Unix socket's server is on this machine.
+/// Returns 0 for a Unix socket, whose bytes the kernel does not count.
 std::uint64_t bytes_received(int socket) {
   tcp_info info{};
   socklen_t size = sizeof info;
@@ -51,28 +52,28 @@ std::uint64_t bytes_received(int socket) {
 
 }  // namespace
 
-ConnectionOptions connection_options(const std::string& where) {
-  ConnectionOptions options = parsed(where);
+ConnectionOptions connection_options(const std::string& address) {
+  ConnectionOptions options = parse_address(address);
   for (const char* const name : {"password", "sslpassword", "service"}) {
     if (!options.contains(name)) continue;
     throw UsageError(
-        "the address holds a password, which every user of this machine can read in the list of "
+        "the address contains a password, which every user of this machine can read in the list of "
         "programs, or names a service; remove it, and put a new password into ~/.pgpass");
   }
   for (const char* const name : {"PGHOST", "PGHOSTADDR", "PGSERVICE"}) ::unsetenv(name);
   if (!is_this_machine(options["host"], options["hostaddr"])) {
-    // In the address, it takes precedence over the environment; GSSAPI would replace TLS.
+    // Options in the address override the environment; GSSAPI would replace TLS.
     const bool is_verified =
         options.emplace("sslmode", "verify-full").first->second == "verify-full" &&
         options.emplace("gssencmode", "disable").first->second == "disable";
     if (!is_verified) {
       throw UsageError(
-          "the address asks for less than sslmode=verify-full to another machine, so that others "
+          "the address allows less than sslmode=verify-full to another machine, so that others "
           "could read and alter the study; write ?sslmode=verify-full without gssencmode, and "
           "&sslrootcert=FILE with the certificate of the authority that signed the server's");
     }
   }
-  // libpq would wait for ever if this is 0 or not a number.
+  // libpq would wait forever if this were 0 or not a number.
   std::string& timeout = options["connect_timeout"];
   const int seconds = number_in<int>(timeout).value_or(0);
   timeout = std::to_string(seconds < 1 ? 10 : std::min(seconds, 60));
@@ -95,20 +96,22 @@ ServerConnection::ServerConnection(const ConnectionOptions& options, const Answe
   names.push_back(nullptr);
   values.push_back(nullptr);
   connection_.reset(PQconnectdbParams(names.data(), values.data(), 0));
-  PGconn* const made = connection_.get();
-  shown_ = one_line(fmt::format("{}:{}/{}", PQhost(made), PQport(made), PQdb(made)));
-  if (PQstatus(made) != CONNECTION_OK) {
+  PGconn* const connection = connection_.get();
+  address_ =
+      one_line(fmt::format("{}:{}/{}", PQhost(connection), PQport(connection), PQdb(connection)));
+  if (PQstatus(connection) != CONNECTION_OK) {
     refuse(
         "cannot connect; check the address, that the server runs, user and password (~/.pgpass, "
         "PGPASSWORD), and for another machine the certificate (sslrootcert)",
-        PQerrorMessage(made));
+        PQerrorMessage(connection));
   }
-  PQsetnonblocking(made, 1);
-  ask("SET synchronous_commit = on");
-  ask("SET client_min_messages = error");  // libpq would print notices
+  PQsetnonblocking(connection, 1);
+  execute("SET synchronous_commit = on");
+  execute("SET client_min_messages = error");  // libpq would print notices
 }
 
-SqlRows ServerConnection::ask(const std::string& statement, const std::vector<ByteView>& values) {
+SqlRows ServerConnection::execute(const std::string& statement,
+                                  const std::vector<ByteView>& values) {
   std::vector<const char*> starts;
   std::vector<int> lengths;
   const std::vector<int> formats(values.size(), 1);
@@ -118,7 +121,7 @@ SqlRows ServerConnection::ask(const std::string& statement, const std::vector<By
     lengths.push_back(static_cast<int>(value.size()));
   }
   const std::jthread guard = abort_if_too_large();
-  began_ = moved_ = Clock::now();
+  request_start_ = last_activity_ = Clock::now();
   PQsendQueryParams(connection_.get(), statement.c_str(), static_cast<int>(values.size()), nullptr,
                     starts.data(), lengths.data(), formats.data(), 1);
   SqlRows rows = next_result();
@@ -126,15 +129,15 @@ SqlRows ServerConnection::ask(const std::string& statement, const std::vector<By
   if (status != PGRES_TUPLES_OK && status != PGRES_COMMAND_OK) {
     const char* const reason = PQresultErrorField(rows.get(), PG_DIAG_MESSAGE_PRIMARY);
     refuse(
-        "the server did not do it; run the same command again, which continues from there, or ask "
-        "its administrator for the rights listed in docs/several-stations.md",
+        "the server refused a statement; run the same command again, which continues from there, "
+        "or ask its administrator for the rights listed in docs/several-stations.md",
         reason != nullptr ? reason : PQerrorMessage(connection_.get()));
   }
-  if (next_result()) refuse("check that the address is the right one", "it answers twice");
+  if (next_result()) refuse("check that the address is the right one", "it sent two answers");
   return rows;
 }
 
-/// PQgetResult, which has no timeout.
+/// Replaces PQgetResult, which has no timeout.
 SqlRows ServerConnection::next_result() {
   constexpr int kPollMs = 100;  // bytes that TLS has buffered do not wake the socket
   while (true) {
@@ -148,7 +151,7 @@ SqlRows ServerConnection::next_result() {
     require_within_limits();
     pollfd socket{.fd = PQsocket(connection_.get()), .events = POLLIN, .revents = 0};
     if (unsent == 1) socket.events |= POLLOUT;
-    if (::poll(&socket, 1, kPollMs) > 0) moved_ = Clock::now();
+    if (::poll(&socket, 1, kPollMs) > 0) last_activity_ = Clock::now();
   }
   return {PQgetResult(connection_.get()), PQclear};
 }
@@ -156,15 +159,15 @@ SqlRows ServerConnection::next_result() {
 void ServerConnection::require_within_limits() const {
   const Clock::time_point now = Clock::now();
   const char* reason = nullptr;
-  if (now - moved_ > limits_.silence) reason = "it has been silent for too long";
-  if (now - began_ > limits_.whole) reason = "its answer does not come to an end";
-  if (is_too_large_) reason = "its answer is absurdly large";
+  if (now - last_activity_ > limits_.silence) reason = "it has been silent for too long";
+  if (now - request_start_ > limits_.total) reason = "its answer takes too long";
+  if (is_too_large_) reason = "its answer is too large";
   if (reason == nullptr) return;
   refuse("the connection to the server was interrupted; check that the address is the right one",
          reason);
 }
 
-/// On another thread, because libpq reads a message to its end, which may be 2 GB away.
+/// Runs on another thread, because libpq reads a message to its end, which may be 2 GB later.
 std::jthread ServerConnection::abort_if_too_large() {
   const int socket = PQsocket(connection_.get());
   const std::uint64_t limit = bytes_received(socket) + limits_.bytes;
@@ -184,7 +187,7 @@ std::jthread ServerConnection::abort_if_too_large() {
 
 void ServerConnection::refuse(const std::string& what, const char* reason) const {
   const std::string text = reason;
-  throw StoreError(fmt::format("{}: {} ({})", shown_, what,
+  throw StoreError(fmt::format("{}: {} ({})", address_, what,
                                one_line(text.substr(0, text.find_last_not_of(" \n") + 1))));
 }
 

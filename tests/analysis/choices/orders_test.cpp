@@ -60,23 +60,23 @@ constexpr const char* kRules[] = {R"({"order": "de-bruijn", "repeats": 3})",
 }  // namespace
 
 TEST_CASE("The order of a study says how chance is dealt") {
-  CHECK(dealt_order(study_with("{}")) == analysis::OrderRule::permuted);
-  CHECK(dealt_order(study_with(R"({"order": "uniform"})")) == analysis::OrderRule::independent);
+  CHECK(order_rule_of(study_with("{}")) == analysis::OrderRule::permuted);
+  CHECK(order_rule_of(study_with(R"({"order": "uniform"})")) == analysis::OrderRule::independent);
   for (const char* rule : kRules)
-    CHECK(dealt_order(study_with(rule)) == analysis::OrderRule::redrawn);
+    CHECK(order_rule_of(study_with(rule)) == analysis::OrderRule::redrawn);
 }
 
 TEST_CASE("What came before is expected by the study's own rule") {
   // Without repetitions the class before is one of the two that a wrong answer can name.
   const analysis::Outcomes limited =
       outcomes_of(study_with(R"({"max_run": 1, "repeats": 4})"), Sense::nothing, 40, 0);
-  const auto found = order_of(limited, 0);
+  const auto found = order_effects_of(limited, 0);
   REQUIRE(found);
   REQUIRE(found->class_before.wrong > 250);
   CHECK(found->class_before.expected / found->class_before.wrong == Approx(0.5).margin(0.03));
   // Of any order, 4 of the 11 other presentations are of that class.
   const auto free =
-      order_of(outcomes_of(study_with(R"({"repeats": 4})"), Sense::nothing, 40, 0), 0);
+      order_effects_of(outcomes_of(study_with(R"({"repeats": 4})"), Sense::nothing, 40, 0), 0);
   CHECK(free->class_before.expected / free->class_before.wrong == Approx(4.0 / 11.0).margin(0.03));
 }
 
@@ -88,7 +88,7 @@ TEST_CASE("Guesses are above chance no more often than p says, whatever the orde
     int significant = 0;
     double sum = 0.0;
     for (int i = 0; i < kStudies; ++i) {
-      const auto test = chance_of(outcomes_of(study, Sense::nothing, 2, i), 0);
+      const auto test = chance_test_of(outcomes_of(study, Sense::nothing, 2, i), 0);
       REQUIRE(test);
       CHECK_FALSE(test->exact);
       significant += test->p <= 0.05 ? 1 : 0;
@@ -104,7 +104,7 @@ TEST_CASE("Answers that are all right are as far above chance as deals can show"
   for (const char* rule : kRules) {
     CAPTURE(rule);
     const analysis::Outcomes outcomes = outcomes_of(study_with(rule), Sense::everything, 4, 0);
-    const auto test = chance_of(outcomes, 0);
+    const auto test = chance_test_of(outcomes, 0);
     REQUIRE(test);
     CHECK(test->correct == test->trials);
     CHECK(test->p == Approx(1.0 / (test->deals + 1.0)));
@@ -114,11 +114,11 @@ TEST_CASE("Answers that are all right are as far above chance as deals can show"
 
 TEST_CASE("Trials that do not count leave the places of the others as they are") {
   analysis::Outcomes outcomes = outcomes_of(study_with(kRules[0]), Sense::everything, 3, 0);
-  const int all = chance_of(outcomes, 0)->trials;
+  const int all = chance_test_of(outcomes, 0)->trials;
   for (analysis::TrialOutcome& trial : outcomes.trials) {
     if (trial.scored && trial.row.trial % 3 == 0) trial.counted = false;
   }
-  const auto test = chance_of(outcomes, 0);
+  const auto test = chance_test_of(outcomes, 0);
   REQUIRE(test);
   CHECK(test->trials < all);
   CHECK(test->correct == test->trials);
@@ -127,14 +127,14 @@ TEST_CASE("Trials that do not count leave the places of the others as they are")
 
 TEST_CASE("A restarted block is dealt as one, without its void presentations") {
   analysis::Outcomes outcomes = outcomes_of(study_with(kRules[1]), Sense::everything, 2, 0);
-  const int all = chance_of(outcomes, 0)->trials;
+  const int all = chance_test_of(outcomes, 0)->trials;
   std::vector<analysis::TrialOutcome> again = outcomes.trials;
   for (analysis::TrialOutcome& trial : again) {
     trial.row.state = record::TrialState::voided;
     trial.counted = false;
   }
   outcomes.trials.insert(outcomes.trials.begin(), again.begin(), again.end());
-  const auto test = chance_of(outcomes, 0);
+  const auto test = chance_test_of(outcomes, 0);
   REQUIRE(test);
   CHECK(test->trials == all);
   CHECK_FALSE(test->exact);
@@ -144,14 +144,14 @@ TEST_CASE("A longer course than the study's is dealt without its rule") {
   analysis::Outcomes outcomes = outcomes_of(study_with(kRules[0]), Sense::everything, 2, 0);
   const std::vector<analysis::TrialOutcome> again = outcomes.trials;
   outcomes.trials.insert(outcomes.trials.end(), again.begin(), again.end());
-  const auto test = chance_of(outcomes, 0);
+  const auto test = chance_test_of(outcomes, 0);
   REQUIRE(test);
   CHECK(test->exact);
 }
 
 TEST_CASE("The chance test of the same outcomes is the same") {
   const analysis::Outcomes outcomes = outcomes_of(study_with(kRules[0]), Sense::nothing, 2, 9);
-  CHECK(chance_of(outcomes, 0)->p == chance_of(outcomes, 0)->p);
+  CHECK(chance_test_of(outcomes, 0)->p == chance_test_of(outcomes, 0)->p);
 }
 
 }  // namespace touchtrial

@@ -31,7 +31,7 @@ class MadePeople {
       trial.row.session = static_cast<int>(people.size());
       trial.right = target;
       trial.response = response;
-      if (place) trial.row.answer = Chosen{*place};
+      if (place) trial.row.answer = ChoiceAnswer{*place};
       people.back().trials.push_back(&trial);
     }
   }
@@ -51,8 +51,8 @@ bool every(const TrialOutcome& /*trial*/) {
   return true;
 }
 
-AgainstGuessing guessing_of(const MadePeople& made) {
-  return against_guessing(made.people, 0.5, every).value();
+GuessingTests guessing_of(const MadePeople& made) {
+  return test_against_guessing(made.people, 0.5, every).value();
 }
 
 /// In 60 trials right in 48: whoever prefers the first interval is wrong towards it.
@@ -94,70 +94,70 @@ TEST_CASE("one who hears everything is found among many who guess, whom the pool
   MadePeople made;
   for (int i = 0; i < 11; ++i) made.right_of(10, 20);
   made.right_of(20, 20);
-  const AgainstGuessing answers = guessing_of(made);
+  const GuessingTests answers = guessing_of(made);
   CHECK(answers.pooled.p.value() > 0.1);
-  const GlobalNullResult anybody = test_anyone_above_chance(answers, 0.5);
-  CHECK(anybody.found());
-  CHECK(anybody.alone == 1);
-  CHECK(people_above_chance(answers, anybody) == std::vector<std::string>{"P12"});
+  const GlobalNullResult global_null = test_anyone_above_chance(answers, 0.5);
+  CHECK(global_null.found());
+  CHECK(global_null.alone == 1);
+  CHECK(people_above_chance(answers, global_null) == std::vector<std::string>{"P12"});
 }
 
 TEST_CASE("whoever stands out by Holm makes it found") {
   MadePeople made;
   for (int i = 0; i < 29; ++i) made.right_of(i % 2 == 0 ? 9 : 10, 20);
   made.right_of(17, 20);
-  const AgainstGuessing answers = guessing_of(made);
+  const GuessingTests answers = guessing_of(made);
   CHECK(answers.people.back().p_holm.value() == Approx(0.0386524200439454).epsilon(1e-9));
-  const GlobalNullResult anybody = test_anyone_above_chance(answers, 0.5);
-  CHECK(anybody.p <= answers.people.back().p_holm.value());
-  CHECK(people_above_chance(answers, anybody) == std::vector<std::string>{"P30"});
+  const GlobalNullResult global_null = test_anyone_above_chance(answers, 0.5);
+  CHECK(global_null.p <= answers.people.back().p_holm.value());
+  CHECK(people_above_chance(answers, global_null) == std::vector<std::string>{"P30"});
 }
 
 TEST_CASE("three of twelve with 15 of 20 are found, though none stands out") {
   MadePeople made;
   for (int i = 0; i < 9; ++i) made.right_of(10, 20);
   for (int i = 0; i < 3; ++i) made.right_of(15, 20);
-  const AgainstGuessing answers = guessing_of(made);
+  const GuessingTests answers = guessing_of(made);
   CHECK(answers.people.back().p_holm.value() > 0.2);
-  const GlobalNullResult anybody = test_anyone_above_chance(answers, 0.5);
-  CHECK(anybody.found());
-  CHECK(anybody.alone == 3);
-  CHECK(anybody.alone_by_chance == Approx(12 * 0.0206947).margin(0.02));
-  CHECK(people_above_chance(answers, anybody).size() == 3);
+  const GlobalNullResult global_null = test_anyone_above_chance(answers, 0.5);
+  CHECK(global_null.found());
+  CHECK(global_null.alone == 3);
+  CHECK(global_null.alone_by_chance == Approx(12 * 0.0206947).margin(0.02));
+  CHECK(people_above_chance(answers, global_null).size() == 3);
 }
 
 TEST_CASE("everybody a little better than guessing is found, and nobody is named") {
   MadePeople made;
   for (int i = 0; i < 40; ++i) made.right_of(12, 20);
-  const AgainstGuessing answers = guessing_of(made);
-  const GlobalNullResult anybody = test_anyone_above_chance(answers, 0.5);
-  CHECK(anybody.p < 0.001);
-  CHECK(people_above_chance(answers, anybody).empty());
+  const GuessingTests answers = guessing_of(made);
+  const GlobalNullResult global_null = test_anyone_above_chance(answers, 0.5);
+  CHECK(global_null.p < 0.001);
+  CHECK(people_above_chance(answers, global_null).empty());
 }
 
 TEST_CASE("people who guess are not found, and the same answers give the same p") {
   MadePeople made;
   for (int i = 0; i < 12; ++i) made.right_of(8 + i % 5, 20);
-  const AgainstGuessing answers = guessing_of(made);
-  const GlobalNullResult anybody = test_anyone_above_chance(answers, 0.5);
-  CHECK(anybody.p > 0.2);
-  CHECK(anybody == test_anyone_above_chance(answers, 0.5));
-  CHECK(people_above_chance(answers, anybody).empty());
+  const GuessingTests answers = guessing_of(made);
+  const GlobalNullResult global_null = test_anyone_above_chance(answers, 0.5);
+  CHECK(global_null.p > 0.2);
+  CHECK(global_null == test_anyone_above_chance(answers, 0.5));
+  CHECK(people_above_chance(answers, global_null).empty());
 }
 
 TEST_CASE("a block says what it could have found") {
   MadePeople made;
   for (int i = 0; i < 12; ++i) made.right_of(10, 20);
-  const Detectable found = detectable_in(guessing_of(made), 0.5);
+  const DetectableAccuracy found = detectable_accuracy(guessing_of(made), 0.5);
   CHECK(found.trials == 20);
   CHECK(found.right == 17);
   CHECK(found.share.value() == Approx(0.882953171453178).epsilon(1e-9));
   MadePeople few;
   for (int i = 0; i < 12; ++i) few.right_of(4, 6);
-  CHECK_FALSE(detectable_in(guessing_of(few), 0.5).share);
+  CHECK_FALSE(detectable_accuracy(guessing_of(few), 0.5).share);
   MadePeople one;
   one.right_of(3, 5);
-  CHECK(detectable_in(guessing_of(one), 0.5).right == 5);
+  CHECK(detectable_accuracy(guessing_of(one), 0.5).right == 5);
 }
 
 TEST_CASE("one slip in four catch trials is no lack of attention, three among twelve people are") {
@@ -179,9 +179,9 @@ TEST_CASE("one slip in four catch trials is no lack of attention, three among tw
 TEST_CASE("of values that are all alike p is that of sign flips, and says so") {
   const GroupTest same = group_test(std::vector(5, 0.25));
   CHECK(same.p == 2.0 / 32.0);
-  CHECK(same.alike);
-  CHECK_FALSE(group_test(std::vector{0.2, 0.25, 0.3}).alike);
-  CHECK_FALSE(group_test(std::vector{0.25}).alike);
+  CHECK(same.all_equal);
+  CHECK_FALSE(group_test(std::vector{0.2, 0.25, 0.3}).all_equal);
+  CHECK_FALSE(group_test(std::vector{0.25}).all_equal);
 }
 
 TEST_CASE("preferences for different intervals are found, though they cancel out in the mean") {
@@ -192,13 +192,13 @@ TEST_CASE("preferences for different intervals are found, though they cancel out
   const std::vector<ChoiceUse> use = choice_use_of(made.people, kIntervals, every);
   CHECK(use[0].excess.p.value() == 1.0);
   const Preferences found = preferences_by_target(made.people, 2, every);
-  CHECK(found.anybody.found());
-  CHECK(found.anybody.alone == 6);
-  REQUIRE(found.of_those_who_prefer().size() == 6);
+  CHECK(found.global_null.found());
+  CHECK(found.global_null.alone == 6);
+  REQUIRE(found.people_with_preference().size() == 6);
   const Preference& first = found.people[6];
   CHECK(first.choice == 0);
   CHECK(first.answers == 60);
-  CHECK(first.named == 27 + 12);
+  CHECK(first.named_count == 27 + 12);
   CHECK(first.right_there == analysis::Proportion{27, 27});
   CHECK(first.right_elsewhere == analysis::Proportion{33, 21});
   CHECK(first.p_holm < 0.05);
@@ -216,9 +216,9 @@ TEST_CASE("a slight preference that all share is found") {
   MadePeople made;
   for (int i = 0; i < 12; ++i) prefers(made, 8);
   const Preferences found = preferences_by_target(made.people, 2, every);
-  CHECK(found.anybody.found());
-  CHECK(found.anybody.p < 0.01);
-  CHECK(found.of_those_who_prefer().empty());
+  CHECK(found.global_null.found());
+  CHECK(found.global_null.p < 0.01);
+  CHECK(found.people_with_preference().empty());
 }
 
 TEST_CASE("answers without a preference keep the test's level, in two intervals and in three") {
@@ -237,7 +237,7 @@ TEST_CASE("answers without a preference keep the test's level, in two intervals 
           made.answer(static_cast<int>(target), static_cast<int>(response));
         }
       }
-      found += preferences_by_target(made.people, choices, every, 199).anybody.found() ? 1 : 0;
+      found += preferences_by_target(made.people, choices, every, 199).global_null.found() ? 1 : 0;
     }
     INFO(choices);
     CHECK(found < 24);  // 10 expected, standard deviation 3.1, and that of 199 deals
@@ -252,8 +252,8 @@ TEST_CASE("who is always right shows no preference") {
   const Preferences found = preferences_by_target(made.people, 2, every);
   REQUIRE(found.people.size() == 1);
   CHECK(found.people[0].p == 1.0);
-  CHECK(found.anybody.people == 0);
-  CHECK_FALSE(found.anybody.found());
+  CHECK(found.global_null.people == 0);
+  CHECK_FALSE(found.global_null.found());
 }
 
 TEST_CASE("who names one picture for all others is found by where the mistakes go") {
@@ -262,16 +262,16 @@ TEST_CASE("who names one picture for all others is found by where the mistakes g
   identifies(made, 4, 3, layout_from(2));
   const auto found = answers_by_place(made.people, 5);
   REQUIRE(found);
-  CHECK(found->own.anybody.found());
-  const Preference& one = found->own.people.back();
+  CHECK(found->preferences.global_null.found());
+  const Preference& one = found->preferences.people.back();
   CHECK(one.choice == 3);
   CHECK(one.place == 1);
   CHECK(one.p_holm < 0.02);
   CHECK(one.right_there.n == 5);
   CHECK(one.right_elsewhere == analysis::Proportion{20, 4});
-  CHECK(found->own.of_those_who_prefer().size() == 1);
+  CHECK(found->preferences.people_with_preference().size() == 1);
   int named = 0;
-  for (const PlaceUse& place : found->places) named += place.named;
+  for (const PlaceUse& place : found->places) named += place.named_count;
   CHECK(named == 8 * 25);
 }
 
@@ -280,14 +280,14 @@ TEST_CASE("a place that all prefer is told from the picture that lies there") {
   for (int i = 0; i < 10; ++i) identifies(made, 2, i % 5, layout_from(i % 5));
   const auto places = answers_by_place(made.people, 5);
   CHECK(places->p < 0.01);
-  CHECK(places->places[0].named > 2 * places->places[1].named);
+  CHECK(places->places[0].named_count > 2 * places->places[1].named_count);
   CHECK(places->places[0].excess.mean.mean.value() > 0.2);
   // The same answers, for one picture that lies somewhere else for everybody.
   MadePeople others;
   for (int i = 0; i < 10; ++i) identifies(others, 2, 3, layout_from(i % 5));
   const auto picture = answers_by_place(others.people, 5);
   CHECK(picture->p > 0.5);
-  CHECK_FALSE(picture->own.anybody.found());
+  CHECK_FALSE(picture->preferences.global_null.found());
 }
 
 TEST_CASE("answers without places, and nobody, have no report by place") {

@@ -122,7 +122,7 @@ record::TrialRow trial_row_of(const CsvRow& row) {
     trial.answered_at = trial.presented_at + time_of(row.at("reaction_time_s"));
   }
   if (const auto position = maybe<int>(row.at("position"))) {
-    trial.answer = Chosen{*position, maybe<int>(row.at("first_position"))};
+    trial.answer = ChoiceAnswer{*position, maybe<int>(row.at("first_position"))};
   }
   trial.confidence = maybe<int>(row.at("confidence"));
   trial.valid = is_set(row.at("valid_in_clear"));
@@ -177,7 +177,7 @@ void read_trials(analysis::Outcomes& outcomes, const std::filesystem::path& file
 }
 
 void read_answers(analysis::Outcomes& outcomes, const std::filesystem::path& file) {
-  outcomes.asked = analysis::own_questions(outcomes.design);
+  outcomes.questionnaires = analysis::closing_questionnaires(outcomes.design);
   for (const CsvRow& row : rows_of(file)) {
     analysis::QuestionAnswer answer{row.at("participant"), number_of<int>(row.at("session")),
                                     row.at("questionnaire"), row.at("question")};
@@ -196,7 +196,7 @@ void read_demographics(analysis::Outcomes& outcomes) {
     const auto own = said.find(one.row.session);
     people.push_back(own == said.end() ? analysis::Demographics{} : own->second);
   }
-  outcomes.demographics = analysis::in_bands(people);
+  outcomes.demographics = analysis::banded_characteristics(people);
 }
 
 }  // namespace

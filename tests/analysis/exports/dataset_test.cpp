@@ -87,7 +87,7 @@ TEST_CASE("A study as BIDS keeps to the specification, with traces, database and
   const fs::path copy = out / "sourcedata" / "study.db";
   CHECK(record::StudyStore::open(copy, record::StudyStore::Access::read_only).trials() ==
         study.store().trials());
-  CHECK_FALSE(is_there(copy.string() + ".key"));
+  CHECK_FALSE(path_exists(copy.string() + ".key"));
   const std::string report = text_of_file(out / "derivatives/touchtrial/results.json");
   CHECK(report == analysis::identification::report_json(
                       analysis::identification::make_report(open.outcomes)));
@@ -179,11 +179,11 @@ TEST_CASE("A BIDS dataset loses its traces and withdrawn participants when it is
   study.close_and_unblind();
   const fs::path out = study.folder() / "bids";
   analysis::export_bids(OpenStudy(study).source, {.traces = true}, out);
-  CHECK(is_there(out / "sub-PZd01"));
+  CHECK(path_exists(out / "sub-PZd01"));
   study.store().withdraw(1, milliseconds(2000), "asked to");
   analysis::export_bids(OpenStudy(study).source, {}, out);
   CHECK(bids_faults(out) == kNoFaults);
-  CHECK_FALSE(is_there(out / "sub-PZd01"));
+  CHECK_FALSE(path_exists(out / "sub-PZd01"));
   for (const auto& [name, text] : contents(out)) {
     INFO(name);
     CHECK_FALSE(contains(text, "P-01"));
@@ -209,14 +209,14 @@ TEST_CASE("Participants with several sessions have folders for them") {
   const fs::path out = study.folder() / "bids";
   analysis::export_bids(OpenStudy(study).source, {.traces = true}, out);
   CHECK(bids_faults(out) == kNoFaults);
-  CHECK(is_there(out / "sub-P01/ses-2/beh/sub-P01_ses-2_task-single_beh.tsv"));
-  CHECK(is_there(out / "sub-P02/ses-1/beh/sub-P02_ses-1_task-single_beh.tsv"));
-  CHECK(is_there(out / "sub-P01/sub-P01_sessions.tsv"));
+  CHECK(path_exists(out / "sub-P01/ses-2/beh/sub-P01_ses-2_task-single_beh.tsv"));
+  CHECK(path_exists(out / "sub-P02/ses-1/beh/sub-P02_ses-1_task-single_beh.tsv"));
+  CHECK(path_exists(out / "sub-P01/sub-P01_sessions.tsv"));
   CHECK(text_of_file(out / "participants.tsv")
             .starts_with("participant_id\tparticipant\thandedness"));
   const fs::path run =
       out / "sub-P01/ses-1/motion/sub-P01_ses-1_task-single_tracksys-stylus_run-003_motion.tsv";
-  CHECK(is_there(run));
+  CHECK(path_exists(run));
   CHECK(text_of_file(out / "phenotype/closing_session_1.tsv") ==
         "participant_id\thard\nsub-P01\t7\n");
   CHECK(text_of_file(out / "phenotype/closing_session_2.tsv") ==
@@ -249,13 +249,13 @@ TEST_CASE("Datasets have what people said, and what they typed only if that is w
   const auto sidecar = nlohmann::json::parse(text_of_file(bids / "phenotype/closing.json"));
   CHECK(sidecar["how_hard"]["Description"] == "How hard was it?");
   CHECK(sidecar["which"]["Levels"]["1"] == "smooth");
-  CHECK(is_there(bids / "phenotype/handedness.tsv"));
+  CHECK(path_exists(bids / "phenotype/handedness.tsv"));
   const std::string events = text_of_file(bids / "sub-P01/beh/sub-P01_task-single_events.tsv");
   CHECK(
       events.starts_with("onset\tduration\tincident\ttrial\tcode\tsafety_fault\tdevice_fault\n"
                          "0.02\tn/a\tpaused\tn/a"));
   CHECK(contains(events, "1.5\tn/a\tinterrupted\t1\tcomfort stop"));
-  CHECK_FALSE(is_there(bids / "sub-P03/beh/sub-P03_task-single_events.tsv"));
+  CHECK_FALSE(path_exists(bids / "sub-P03/beh/sub-P03_task-single_events.tsv"));
   const std::string people = text_of_file(bids / "participants.tsv");
   CHECK(contains(people, "interruptions\tpauses"));
   CHECK(contains(people, "consent_version"));
@@ -267,7 +267,7 @@ TEST_CASE("Datasets have what people said, and what they typed only if that is w
       }
     }
   }
-  options.typed = analysis::Typed::shown;
+  options.free_text = analysis::FreeText::shown;
   analysis::export_bids(open.source, options, bids);
   analysis::export_psych_ds(open.source, options, psych);
   CHECK(bids_faults(bids) == kNoFaults);

@@ -26,7 +26,7 @@ TEST_CASE("A second export removes what the first wrote and it does not hold, wi
   replace_file(folder.path() / "mine.txt", "mine");
   analysis::write_export(folder.path(), kOurs, {file("sub-1/a.txt", "3")});
   CHECK(text_of_file(folder.path() / "sub-1/a.txt") == "3");
-  CHECK_FALSE(is_there(folder.path() / "sub-2"));
+  CHECK_FALSE(path_exists(folder.path() / "sub-2"));
   CHECK(text_of_file(folder.path() / "mine.txt") == "mine");
 }
 
@@ -39,7 +39,7 @@ TEST_CASE("A folder with another study's export is refused untouched") {
   });
   CHECK(contains(complaint, "single"));
   CHECK(text_of_file(folder.path() / "trials.csv") == "theirs");
-  CHECK_FALSE(is_there(folder.path() / "other.csv"));
+  CHECK_FALSE(path_exists(folder.path() / "other.csv"));
 }
 
 TEST_CASE("A file that no export wrote is not overwritten") {
@@ -51,7 +51,7 @@ TEST_CASE("A file that no export wrote is not overwritten") {
   });
   CHECK(contains(complaint, "trials.csv"));
   CHECK(text_of_file(folder.path() / "trials.csv") == "mine");
-  CHECK_FALSE(is_there(folder.path() / "other.csv"));
+  CHECK_FALSE(path_exists(folder.path() / "other.csv"));
 }
 
 TEST_CASE("An interrupted export can be repeated") {
@@ -63,14 +63,14 @@ TEST_CASE("An interrupted export can be repeated") {
   CHECK(text_of_file(folder.path() / "a.csv") == "1");
   analysis::write_export(folder.path(), kOurs, {file("b.csv", "2")});
   CHECK(text_of_file(folder.path() / "b.csv") == "2");
-  CHECK_FALSE(is_there(folder.path() / "a.csv"));
+  CHECK_FALSE(path_exists(folder.path() / "a.csv"));
 }
 
 TEST_CASE("Tables of one study share a folder, and a dataset has one of its own") {
   const TempFolder folder;
   analysis::write_export(folder.path(), kOurs, {file("trials.csv", "1")});
   analysis::write_export(folder.path(), {"pair", "aa11", "json"}, {file("study.json", "{}")});
-  CHECK(is_there(folder.path() / "trials.csv"));
+  CHECK(path_exists(folder.path() / "trials.csv"));
   CHECK_THROWS_AS(
       analysis::write_export(folder.path(), {"pair", "aa11", "bids"}, {file("README", "dataset")}),
       FileError);
@@ -84,7 +84,7 @@ TEST_CASE("A mark that was tampered with removes nothing outside of its folder")
   replace_file(out / analysis::kExportMark,
                R"({"study":"pair","study_id":"aa11","files":{"csv":["../precious.txt"]}})");
   analysis::write_export(out, kOurs, {file("a.csv", "1")});
-  CHECK(is_there(folder.path() / "precious.txt"));
+  CHECK(path_exists(folder.path() / "precious.txt"));
 }
 
 TEST_CASE("A file that is not a valid mark is named") {

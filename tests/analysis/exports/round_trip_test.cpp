@@ -111,12 +111,12 @@ TEST_CASE("How a study was collected is the same from its CSV files, in words an
                                        {1.0, 1.25, 0.8}, {1.0, 1.0, 1.5}};
   felt.servo = record::ServoHealth{999.75, 1.5, 40.25, 80.125, 1e3 / 3.0, 2, 17};
   felt.before_trials = [](record::SessionRecorder& recorder) {
-    recorder.add(
-        milliseconds(10), record::EventKind::practised,
-        record::PracticeBody{.round = 1, .presentation = 1, .answer = Chosen{0}, .correct = false});
-    recorder.add(
-        milliseconds(20), record::EventKind::practised,
-        record::PracticeBody{.round = 2, .presentation = 1, .answer = Chosen{0}, .correct = true});
+    recorder.add(milliseconds(10), record::EventKind::practised,
+                 record::PracticeBody{
+                     .round = 1, .presentation = 1, .answer = ChoiceAnswer{0}, .correct = false});
+    recorder.add(milliseconds(20), record::EventKind::practised,
+                 record::PracticeBody{
+                     .round = 2, .presentation = 1, .answer = ChoiceAnswer{0}, .correct = true});
     recorder.add(milliseconds(40), record::EventKind::deviated,
                  record::DeviationBody{"no-masking-noise", "no \"sound\" card,\nnone"});
     recorder.add(milliseconds(45), record::EventKind::deviated,
@@ -153,7 +153,7 @@ TEST_CASE("What participants said reports the same from its CSV files") {
   study.close_and_unblind();
   check_round_trip(study);
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
-  const auto said = analysis::summaries_of(outcomes);
+  const auto said = analysis::question_summaries(outcomes);
   REQUIRE(said.size() == 3);
   CHECK(said[0].question == "hard");
   CHECK(said[0].numbers.median == 4.0);

@@ -57,7 +57,7 @@ TEST_CASE("a picture's measures are those of its greys, texture and force") {
   }
 }
 
-TEST_CASE("small pictures have no likeness") {
+TEST_CASE("small pictures have no similarity") {
   const auto result = measured({{"s", "weak", "a", blocks(1, 80, 10)},
                                 {"s", "weak", "b", blocks(2, 80, 10)},
                                 {"s", "strong", "c", blocks(3, 80, 90)},
@@ -66,10 +66,10 @@ TEST_CASE("small pictures have no likeness") {
   const SetMeasures& set = result.sets[0];
   CHECK(set.classes == 2);
   CHECK(set.pictures == 4);
-  CHECK_FALSE(set.likeness.has_value());
+  CHECK_FALSE(set.similarity.has_value());
 }
 
-TEST_CASE("likeness tells pictures of one class from pictures of two") {
+TEST_CASE("similarity tells pictures of one class from pictures of two") {
   const GreyImage one = blocks(1, 168, 60);
   const GreyImage other = blocks(2, 176, 60);
   int last = 0;
@@ -84,13 +84,13 @@ TEST_CASE("likeness tells pictures of one class from pictures of two") {
                        });
   CHECK(last == 3);
   REQUIRE(result.sets.size() == 2);
-  REQUIRE(result.sets[0].likeness.has_value());
-  const Likeness& likeness = *result.sets[0].likeness;
-  CHECK(likeness.original_within.pairs == 1);
-  CHECK(likeness.original_within.mean == Approx(1.0));
-  CHECK(likeness.texture_within.mean == Approx(1.0));
-  CHECK(likeness.original_between.pairs == 2);
-  CHECK(std::abs(likeness.original_between.mean) < 0.1);
+  REQUIRE(result.sets[0].similarity.has_value());
+  const Similarity& similarity = *result.sets[0].similarity;
+  CHECK(similarity.original_within.pairs == 1);
+  CHECK(similarity.original_within.mean == Approx(1.0));
+  CHECK(similarity.texture_within.mean == Approx(1.0));
+  CHECK(similarity.original_between.pairs == 2);
+  CHECK(std::abs(similarity.original_between.mean) < 0.1);
 }
 
 TEST_CASE("equalising is ignored, and an empty set is refused") {

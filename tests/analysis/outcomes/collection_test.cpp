@@ -70,7 +70,7 @@ TEST_CASE("A session's record holds practice, deviations, resumptions and statio
   session.before_trials = [](record::SessionRecorder& recorder) {
     const auto practise = [&](milliseconds at, int round, int presentation, bool correct) {
       recorder.add(at, record::EventKind::practised,
-                   record::PracticeBody{round, presentation, Chosen{0}, correct});
+                   record::PracticeBody{round, presentation, ChoiceAnswer{0}, correct});
     };
     practise(milliseconds(10), 1, 1, false);
     practise(milliseconds(20), 2, 1, true);
@@ -132,7 +132,7 @@ TEST_CASE("Without the key a record lacks what a session's people said and answe
   FakeSession session = session_of("P01", 1);
   session.before_trials = [](record::SessionRecorder& recorder) {
     recorder.add(milliseconds(10), record::EventKind::practised,
-                 record::PracticeBody{1, 1, Chosen{0}, true});
+                 record::PracticeBody{1, 1, ChoiceAnswer{0}, true});
     recorder.add(milliseconds(40), record::EventKind::deviated,
                  record::DeviationBody{"no-masking-noise", "no sound card"});
   };
@@ -154,7 +154,7 @@ TEST_CASE("Practice that did not reach its criterion is reported") {
   FakeSession session = session_of("P01", 1);
   session.before_trials = [](record::SessionRecorder& recorder) {
     recorder.add(milliseconds(10), record::EventKind::practised,
-                 record::PracticeBody{1, 1, Chosen{0}, false});
+                 record::PracticeBody{1, 1, ChoiceAnswer{0}, false});
     recorder.add(milliseconds(20), record::EventKind::deviated,
                  record::DeviationBody{"practice-not-passed", "0 of 1"});
   };

@@ -21,7 +21,7 @@ TEST_CASE("bands of fewer than five people are never shown, nor told by what is 
   add(people, 9, {"20-29", "woman", 80.0});
   add(people, 6, {"30-39", "man", 80.0});
   add(people, 2, {"40-49", "man", -80.0});
-  const std::vector<Characteristic> all = analysis::in_bands(people);
+  const std::vector<Characteristic> all = analysis::banded_characteristics(people);
   REQUIRE(all.size() == 3);
   // Two of 17 would be told by 9 and 6, so that the six stand with them.
   REQUIRE(all[0].bands.size() == 1);
@@ -36,13 +36,14 @@ TEST_CASE("bands of fewer than five people are never shown, nor told by what is 
 }
 
 TEST_CASE("a characteristic of few people is named without numbers, one that nobody told is not") {
-  CHECK(analysis::in_bands({}).empty());
-  CHECK(analysis::in_bands(std::vector<Demographics>(20)).empty());
+  CHECK(analysis::banded_characteristics({}).empty());
+  CHECK(analysis::banded_characteristics(std::vector<Demographics>(20)).empty());
   std::vector<Demographics> people;
   add(people, 4, {"20-29", "woman", 80.0});
-  for (const Characteristic& one : analysis::in_bands(people)) CHECK(one.bands.empty());
+  for (const Characteristic& one : analysis::banded_characteristics(people))
+    CHECK(one.bands.empty());
   add(people, 1, {"20-29", "man", 0.0});
-  const std::vector<Characteristic> all = analysis::in_bands(people);
+  const std::vector<Characteristic> all = analysis::banded_characteristics(people);
   REQUIRE(all.size() == 3);
   CHECK(all[0].bands.at(0).people == 5);
   CHECK(all[0].others == 0);

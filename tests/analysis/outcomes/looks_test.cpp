@@ -122,7 +122,7 @@ TEST_CASE("a station's file has no registered look") {
 TEST_CASE("after a look at the question alone, everything else stays blind") {
   FakeStudy study = study_with_looks();
   add_sessions(study, 1, 2);
-  CHECK_THROWS_AS(analysis::load_for_question(study.store(), study.key()), StoreError);
+  CHECK_THROWS_AS(analysis::load_outcomes_for_question(study.store(), study.key()), StoreError);
   study.store().look_at_question(kNoon, "as registered");
   add_sessions(study, 3, 3);
   CHECK_FALSE(study.store().state().unblinded);
@@ -130,7 +130,8 @@ TEST_CASE("after a look at the question alone, everything else stays blind") {
   CHECK_FALSE(study.store().state().shows(3));
   CHECK_THROWS_AS(analysis::load_outcomes(study.store(), study.key()), StoreError);
   CHECK_THROWS_AS(analysis::load_outcomes(study.store(), study.key(), "P1"), StoreError);
-  const analysis::Outcomes outcomes = analysis::load_for_question(study.store(), study.key());
+  const analysis::Outcomes outcomes =
+      analysis::load_outcomes_for_question(study.store(), study.key());
   CHECK(outcomes.sessions.size() == 2);
   CHECK(outcomes.collection.flow.unseen == 1);
   study.store().look_at("P1", kNoon, "asked for it");

@@ -60,7 +60,7 @@ const PersonStatus& person(const StudyStatus& status, const std::string& id) {
 }
 
 bool has_left(const StudyStatus& status, const std::string& places) {
-  return std::ranges::any_of(status.left,
+  return std::ranges::any_of(status.tasks,
                              [&](const std::string& one) { return names(one, places); });
 }
 
@@ -74,7 +74,7 @@ TEST_CASE("A study's status says who is done, who is open, who is to come and wh
                                                {.participant = "P02", .consent_version = "1"},
                                                {.participant = "P04", .consent_version = "2"},
                                                {.participant = "P06", .consent_version = "2"}},
-                                  .knows_consents = true,
+                                  .has_consents = true,
                                   .planned = 6,
                                   .consent_version = "2"};
   const StudyStatus status = analysis::status_of(study.store(), sources);
@@ -182,7 +182,7 @@ TEST_CASE("A study's status tells what closes it, and names nobody who was erase
   CHECK_FALSE(contains(analysis::status_text(closed, {}), "P02"));
   CHECK_FALSE(closed.orders);
   study.store().unblind(milliseconds(50), "planned", false);
-  CHECK(analysis::status_of(study.store(), sources).left.empty());
+  CHECK(analysis::status_of(study.store(), sources).tasks.empty());
 }
 
 }  // namespace touchtrial

@@ -48,7 +48,7 @@ TEST_CASE("the paper's own table has the changes and the contradiction that are 
   CHECK(published_changes(kPaperStatistics[0]).rising == 16);
   CHECK(published_changes(kPaperStatistics[2]).falling == 16);
   CHECK(published_changes(kPaperStatistics[3]).falling == 20);
-  CHECK(published_changes(kPaperStatistics[4]).of == 0);
+  CHECK(published_changes(kPaperStatistics[4]).total == 0);
   CHECK(published_least_correlation() == Approx(0.34025));
   for (std::size_t i = 0; i < kPublishedTable.size(); ++i) {
     INFO("picture " << i + 1);

@@ -36,7 +36,7 @@ TEST_CASE("assumed intervals have the widths of their extremes") {
   const Interval alike = assumed_interval(p, 0.0, study);
   CHECK(alike.high - p == Approx(kT19 * std::sqrt(p * (1.0 - p) / 5.0 / 20.0)));
   CHECK(p - alike.low == Approx(alike.high - p));
-  const Interval widest = assumed_interval(p, widest_spread(p), study);
+  const Interval widest = assumed_interval(p, largest_spread(p), study);
   CHECK(widest.high - p == Approx(kT19 * std::sqrt(p * (1.0 - p) / 20.0)));
   CHECK(assumed_interval(0.99, 0.05, study).high == 1.0);
   CHECK(assumed_interval(1.0, 0.0, study) == Interval{1.0, 1.0});

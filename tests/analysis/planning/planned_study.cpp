@@ -16,8 +16,8 @@ planning::CountedPerson answers_of(const PlannedStudy& planned,
   std::vector<std::string> shown;
   for (const int picture : layout) shown.push_back(planned.labels[picture]);
   const simulation::Individual individual(subject, seed, number);
-  const simulation::SeenPictures pictures =
-      simulation::see(shown, subject, individual, planned.knowledge);
+  const simulation::MatchedPictures pictures =
+      simulation::match_pictures(shown, subject, individual, planned.knowledge);
   const simulation::FeltDecision decision(individual, planned.knowledge);
   const auto classes = planned.labels.size();
   planning::CountedPerson person{0, std::vector<double>(planned.bank.stimuli() * classes, 0.0)};

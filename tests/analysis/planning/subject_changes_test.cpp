@@ -43,15 +43,15 @@ TEST_CASE("every change that matters to answers changes the words of an assumpti
 }
 
 TEST_CASE("a fit names each key that it ignores") {
-  CHECK(planning::keys_that_fits_ignore({}).empty());
+  CHECK(planning::keys_ignored_by_fits({}).empty());
   SubjectModel every;
   for (const Change& change : changes()) {
     SubjectModel subject;
     change.make(subject);
-    CHECK(planning::keys_that_fits_ignore(subject) == change.ignored);
+    CHECK(planning::keys_ignored_by_fits(subject) == change.ignored);
     change.make(every);
   }
-  CHECK(planning::keys_that_fits_ignore(every) ==
+  CHECK(planning::keys_ignored_by_fits(every) ==
         "training, memory_noise, learning, period_noise_spread, serial, fatigue");
 }
 

@@ -78,7 +78,7 @@ std::vector<Reference> references() {
 TEST_CASE("means of censored values are those of R's survreg") {
   for (const Reference& one : references()) {
     const CensoredMean found = censored_mean(one.people);
-    CHECK(found.lack == Lack::nothing);
+    CHECK(found.lack == MissingReason::nothing);
     CHECK(found.mean.value() == Approx(one.mean).epsilon(1e-9));
     CHECK(found.sd.value() == Approx(one.sd).epsilon(1e-9));
     CHECK(found.interval.value().low == Approx(one.low).epsilon(1e-9));
@@ -178,7 +178,7 @@ TEST_CASE("with more than half of the people censored there is no mean") {
   CHECK(censored_mean(people).interval);
   people.push_back({0.0, kOpen});
   const CensoredMean found = censored_mean(people);
-  CHECK(found.lack == Lack::most);
+  CHECK(found.lack == MissingReason::most);
   CHECK_FALSE(found.mean);
   CHECK_FALSE(found.interval);
   CHECK_FALSE(found.sd);
@@ -188,22 +188,22 @@ TEST_CASE("with more than half of the people censored there is no mean") {
 }
 
 TEST_CASE("fewer than two known values have no interval, and a mean only if nobody is censored") {
-  CHECK(censored_mean({}).lack == Lack::values);
+  CHECK(censored_mean({}).lack == MissingReason::values);
   CHECK_FALSE(censored_mean({}).mean);
   const CensoredMean one = censored_mean(all_at({-5.0}));
   CHECK(one.mean == -5.0);
   CHECK(one.median == -5.0);
   CHECK_FALSE(one.interval);
-  CHECK(one.lack == Lack::values);
+  CHECK(one.lack == MissingReason::values);
   const CensoredMean two = censored_mean(std::vector<Bounds>{at(-5.0), {0.0, kOpen}});
   CHECK_FALSE(two.mean);
   CHECK_FALSE(two.interval);
-  CHECK(two.lack == Lack::values);
+  CHECK(two.lack == MissingReason::values);
 }
 
 TEST_CASE("values that are all alike have no interval of zero width, and no p") {
   const CensoredMean same = censored_mean(all_at({-20.0, -20.0, -20.0}));
-  CHECK(same.lack == Lack::spread);
+  CHECK(same.lack == MissingReason::spread);
   CHECK(same.mean == -20.0);
   CHECK(same.sd == 0.0);
   CHECK_FALSE(same.interval);

@@ -54,7 +54,7 @@ TEST_CASE("orders are dealt anew block by block, and a person without a partner 
 
 TEST_CASE("a period that is the same for everybody changes neither effect nor p") {
   std::vector<CrossoverPerson> learning = eleven_people();
-  for (CrossoverPerson& one : learning) one.difference += one.first_came_first ? -0.17 : 0.17;
+  for (CrossoverPerson& one : learning) one.difference += one.first_method_first ? -0.17 : 0.17;
   const CrossoverEstimate before = crossover_estimate(eleven_people(), 0.0, Sides::two);
   const CrossoverEstimate after = crossover_estimate(learning, 0.0, Sides::two);
   CHECK(*after.effect == Approx(*before.effect));
@@ -86,7 +86,7 @@ TEST_CASE("people who are alike within their order have the p of the deals") {
   CHECK(*found.effect == Approx(0.2));
   CHECK_FALSE(found.interval);
   CHECK_FALSE(found.period_interval);
-  for (CrossoverPerson& one : alike) one.difference = one.first_came_first ? 0.1 : -0.1;
+  for (CrossoverPerson& one : alike) one.difference = one.first_method_first ? 0.1 : -0.1;
   CHECK(crossover_estimate(alike, 0.0, Sides::two).p == 1.0);
   CHECK(crossover_permutation(alike, 0.0, Sides::two)->least == 1.0);
 }

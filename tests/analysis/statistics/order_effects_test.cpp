@@ -102,7 +102,7 @@ TEST_CASE("orders are those of the design") {
   // The classes alternate, whichever comes first; the only wrong answer names the other class,
   // which is always before it, unless it comes first.
   const Participants one = {{block_of({{0, 0}, {1, 0}, {0, 0}, {1, 1}})}};
-  const RedrawnClasses alternating = [](std::size_t, int draw) {
+  const ClassRedraw alternating = [](std::size_t, int draw) {
     return draw % 2 == 0 ? std::vector<int>{0, 1, 0, 1} : std::vector<int>{1, 0, 1, 0};
   };
   CHECK(order_effects(one, alternating, kDraws)->class_before.expected ==
@@ -111,7 +111,7 @@ TEST_CASE("orders are those of the design") {
   CHECK(order_effects(one, {}, kDraws)->class_before.expected ==
         Approx(0.75 * 2.0 / 3.0).margin(0.02));
   // Where a drawn order does not have the classes, the block stays as it was.
-  const RedrawnClasses others = [](std::size_t, int) { return std::vector<int>{0, 0, 0, 0}; };
+  const ClassRedraw others = [](std::size_t, int) { return std::vector<int>{0, 0, 0, 0}; };
   CHECK(order_effects(one, others, kDraws)->class_before.expected == 1.0);
   CHECK(*order_effects(one, others, kDraws)->class_before.p == 1.0);
 }
@@ -133,7 +133,7 @@ TEST_CASE("order effects need trials, draws and classes") {
   const Participants one = {{block_of({{0, 0}, {1, 1}})}};
   CHECK_THROWS_AS(order_effects(one, {}, 0), std::invalid_argument);
   CHECK_THROWS_AS(order_effects(Participants{{block_of({{-1, 0}})}}, {}, 1), std::invalid_argument);
-  const RedrawnClasses shorter = [](std::size_t, int) { return std::vector<int>{0}; };
+  const ClassRedraw shorter = [](std::size_t, int) { return std::vector<int>{0}; };
   CHECK_THROWS_AS(order_effects(one, shorter, 1), std::invalid_argument);
   // One trial has no slope.
   const OrderEffects single = *order_effects(Participants{{block_of({{0, 0}})}}, {}, 1);

@@ -79,8 +79,9 @@ class TwoTracks final : public Task {
   void check(const JsonValue&, const Study&) const override {}
   int scored_trials(const Study&) const override { return 24; }
   std::string rule(const Study&) const override { return "two-tracks 1"; }
-  Ask ask(const Study&, const Place&) const override {
-    return {.planes = 2, .question = Choose{.title = {}, .choices = {{"first"}, {"second"}}}};
+  TrialQuestion ask(const Study&, const Place&) const override {
+    return {.planes = 2,
+            .question = ChoiceQuestion{.title = {}, .choices = {{"first"}, {"second"}}}};
   }
   std::unique_ptr<Order> order(const Study&, const ScheduleDraw& draw) const override {
     return std::make_unique<BlockOrder>(draw);
@@ -107,7 +108,7 @@ class AdaptiveLaboratory {
   [[nodiscard]] session::Session fresh(BufferedEvents& events) const {
     return session::Session(study::make_order(study_, draw_), study_.trials,
                             record::SessionRecorder(1, SecretKey{}, events),
-                            session::seal_with(tiny_.key()));
+                            session::block_serialiser(tiny_.key()));
   }
   /// \throws VerificationError at the first event that cannot follow
   void check(const std::vector<Event>& events) const {
@@ -161,7 +162,7 @@ TEST_CASE("a session presents what its procedure chooses after the answers so fa
   }
   CHECK(session.phase() == session::SessionPhase::finished);
   CHECK(record.size() == 26);
-  CHECK_FALSE(procedures::first_not_chosen(two_tracks(), lab.secret(), record));
+  CHECK_FALSE(procedures::first_mismatch(two_tracks(), lab.secret(), record));
   CHECK_NOTHROW(lab.check(as_recorded(events.events, SecretKey{})));
 }
 
@@ -239,12 +240,12 @@ TEST_CASE("the check names the first trial that the procedure would not have pre
       body.kind = body.kind == "catch" ? "scored" : "catch";
     })),
                       holds_text(trial) && names("catch scored"));
-    CHECK_THROWS_WITH(lab.check(altered([](AnswerBody& body) { body.answer = Chosen{2}; })),
+    CHECK_THROWS_WITH(lab.check(altered([](AnswerBody& body) { body.answer = ChoiceAnswer{2}; })),
                       holds_text(trial) && names("2"));
     // Another answer is possible by itself, and shows in what came later, if anything did.
     try {
-      lab.check(
-          altered([](AnswerBody& body) { body.answer = Chosen{1 - *position_of(body.answer)}; }));
+      lab.check(altered(
+          [](AnswerBody& body) { body.answer = ChoiceAnswer{1 - *position_of(body.answer)}; }));
     } catch (const VerificationError& error) {
       ++told;
       CHECK_THAT(std::string(error.what()), names("1"));

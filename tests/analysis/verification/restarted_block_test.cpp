@@ -44,7 +44,7 @@ class RestartedSession {
     recorder_.interrupted(at_, 2, "comfort stop");
     const int first = static_cast<int>(begun_.trials.size()) + 1;
     const auto again = study::make_order(key_.study, key_.draw_of(1, study::Draws::rehearsal))
-                           ->restarted(0, restarts_before, first);
+                           ->redraw_block(0, restarts_before, first);
     recorder_.block_restarted(at_, 0, first, study::block_to_json(again, key_));
     for (const study::Trial& one : again) answer(one.place.trial);
     if (old_number_again) answer(3);
@@ -57,7 +57,7 @@ class RestartedSession {
   void answer(int trial) {
     at_ += seconds(10);
     recorder_.presented(at_, trial, 0);
-    recorder_.answered(at_, {trial, Chosen{0}, std::nullopt});
+    recorder_.answered(at_, {trial, ChoiceAnswer{0}, std::nullopt});
   }
 
   const study::StudyKey& key_;

@@ -44,7 +44,7 @@ class ToldSession {
     return *this;
   }
   ToldSession& answer(int trial) {
-    recorder_.answered(later(), {trial, Chosen{0}, std::nullopt});
+    recorder_.answered(later(), {trial, ChoiceAnswer{0}, std::nullopt});
     return *this;
   }
   ToldSession& show(int trial) { return present(trial).answer(trial); }
@@ -71,7 +71,7 @@ class ToldSession {
   ToldSession& restart_block() {
     const study::StudyKey& key = study_.key();
     const auto again = study::make_order(key.study, key.draw_of(1, study::Draws::rehearsal))
-                           ->restarted(0, 0, count() + 1);
+                           ->redraw_block(0, 0, count() + 1);
     recorder_.block_restarted(later(), 0, count() + 1, study::block_to_json(again, key));
     return *this;
   }

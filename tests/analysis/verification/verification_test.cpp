@@ -216,6 +216,33 @@ TEST_CASE("verify_study with the key finds a chain that was rebuilt and signed w
   CHECK_FALSE(check_of(verification, "payloads").detail.empty());
 }
 
+TEST_CASE("verify_study with the key opens each trace and counts its samples") {
+  using namespace std::chrono_literals;
+  enum class Fault { none, samples, key };
+  const Fault fault = GENERATE(Fault::none, Fault::samples, Fault::key);
+  record::Trace trace;
+  trace.samples.resize(5);
+  const auto record_trial = [&](record::SessionRecorder& recorder) {
+    recorder.presented(1s, 1, 0);
+    record::TrialEvidence evidence = recorder.pack_evidence({.trial = 1, .rate_hz = 1000.0}, {}, trace);
+    if (fault == Fault::samples) evidence.body.samples = 6;
+    if (fault == Fault::key) {
+      evidence.trace = record::seal_trace(1, 1, trace, SecretKey{});
+      evidence.body.trace = blake2b(evidence.trace.box);
+    }
+    recorder.timed_out(2s, 1, evidence);
+  };
+  FakeStudy study(study::identification::classification());
+  study.add(
+      {.participant = "P01", .complete = false, .stop_after = 0, .before_trials = record_trial});
+  const Verification verification = analysis::verify_study(study.store(), &study.key(), nullptr);
+  CHECK(check_of(verification, "chain").state == CheckState::passed);
+  const Check& traces = check_of(verification, "traces");
+  INFO(traces.detail);
+  CHECK(traces.state == (fault == Fault::none ? CheckState::passed : CheckState::failed));
+  CHECK(names(traces.detail, fault == Fault::none ? "1" : "1 1"));
+}
+
 TEST_CASE("verify_files makes a damaged key and a missing pack findings") {
   FakeStudy study({.with_pack = true});
   const auto key_path = study.folder() / "study.db.key";

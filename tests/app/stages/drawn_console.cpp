@@ -67,10 +67,10 @@ void DrawnConsole::draw(bool is_down) {
   ImGui::Render();
 }
 
-void DrawnConsole::click(app::ExperimenterAction::What what) {
+void DrawnConsole::click(app::ExperimenterAction::Kind what) {
   draw(false);
   draw(false);
-  constexpr auto kStop = static_cast<int>(app::ExperimenterAction::What::comfort_stop);
+  constexpr auto kStop = static_cast<int>(app::ExperimenterAction::Kind::comfort_stop);
   const Area stop = comfort_stop_button();
   const double across = stop.right - stop.left + kGap;
   const double down = stop.bottom - stop.top + kGap;

@@ -17,7 +17,7 @@ class DrawnConsole {
   DrawnConsole& operator=(const DrawnConsole&) = delete;
 
   /// Presses and releases the button of an action, wherever the panel has drawn it.
-  void click(app::ExperimenterAction::What what);
+  void click(app::ExperimenterAction::Kind what);
 
  private:
   void draw(bool is_down);

@@ -24,7 +24,7 @@ namespace touchtrial {
 namespace {
 
 using nlohmann::json;
-using What = app::ExperimenterAction::What;
+using Action = app::ExperimenterAction::Kind;
 
 constexpr int kAbove = 20;      ///< ticks before the hand comes down
 constexpr int kFeltFrom = 150;  ///< ticks whose forces say what was felt
@@ -70,7 +70,7 @@ class Script final : public session::Participant,
       : deed_(std::move(deed)), log_(log, std::ios::app), clock_(clock), desk_(true) {
     app::ExperimenterTerminal terminal;
     terminal.write = [](const std::string&) {};
-    terminal.rewrites = true;
+    terminal.can_rewrite = true;
     terminal.key = [this]() -> std::optional<char> {
       if (keys_.empty()) return std::nullopt;
       const char key = keys_.front();
@@ -88,7 +88,7 @@ class Script final : public session::Participant,
     choices_ = static_cast<int>(labels.size());
     write({{"is", "labels"}, {"labels", labels}});
   }
-  [[nodiscard]] std::optional<session::StepReply> attend(const session::Step& step) override {
+  [[nodiscard]] std::optional<session::StepReply> show_step(const session::Step& step) override {
     if (std::exchange(step_, step.index()) != step.index()) polls_ = 0;
     const auto* const interval = std::get_if<session::IntervalStep>(&step);
     is_between_ = interval != nullptr && interval->interval > 1;
@@ -110,7 +110,7 @@ class Script final : public session::Participant,
     is_on_ = true;
     return hand_;
   }
-  void exploring(device::ServoControl& servo) override {
+  void while_exploring(device::ServoControl& servo) override {
     look();
     if (wants_stop_) servo.comfort_stop();
     if (hand_.tick > kTouched + 40 && step_ != session::Step(session::IntervalStep{}).index()) {
@@ -138,7 +138,7 @@ class Script final : public session::Participant,
       [[nodiscard]] Time now() noexcept override { return now_at; }
       void wait_until(Time time) noexcept override {
         now_at = std::max(now_at, time);
-        if (++waits % 10 == 0) person.exploring(control);
+        if (++waits % 10 == 0) person.while_exploring(control);
       }
     };
     session::TraceBuilder builder(trace, options.rate_hz, session::max_samples(options));
@@ -149,7 +149,7 @@ class Script final : public session::Participant,
     session::Exploration done;
     done.servo = device::run_servo(device, force, sink, options, clock, hooks);
     done.landed_at = builder.landed_at();
-    done.lasted = session::time_of_tick(done.servo.ticks, options.rate_hz);
+    done.duration = session::time_of_tick(done.servo.ticks, options.rate_hz);
     is_on_ = wants_stop_ = false;
     write({{"is", "felt"},
            {"ms", hand_.tick},
@@ -173,7 +173,7 @@ class Script final : public session::Participant,
   [[nodiscard]] std::optional<std::vector<session::Tick>> day_sheet(
       const std::vector<session::DaySheetItem>& items) override {
     const app::ExperimenterQuestion question = desk_.view().question;
-    if (question.is_own()) keys_ += kEscape;
+    if (question.is_from_experimenter()) keys_ += kEscape;
     if (question.kind == app::ExperimenterQuestion::Kind::keys) keys_ += '\r';
     return desk_.day_sheet(items);
   }
@@ -182,7 +182,7 @@ class Script final : public session::Participant,
   // ---- The device
   [[nodiscard]] session::SupplyState make_ready() override {
     if (is_armed_) return session::SupplyState::ready;
-    switch (desk_.attend("")) {
+    switch (desk_.poll("")) {
       case session::Attendant::Reply::arm:
         is_armed_ = true;
         return session::SupplyState::ready;
@@ -192,7 +192,7 @@ class Script final : public session::Participant,
         return session::SupplyState::not_yet;
     }
   }
-  void interrupted() override { is_armed_ = false; }
+  void on_interruption() override { is_armed_ = false; }
 
  private:
   [[nodiscard]] session::StepReply reply_to(const session::Step& step) {
@@ -220,7 +220,7 @@ class Script final : public session::Participant,
     reply.took = kThought;
     const bool again = step.may_explore_again && answers_ == 1 && !has_felt_again_;
     if (again) is_again_ = has_felt_again_ = reply.explore_again = true;
-    Chosen chosen;
+    ChoiceAnswer chosen;
     if (!again) {
       chosen.position = (5 * answers_ + 1) % choices_;
       if (answers_ % 3 == 2) chosen.first_position = (chosen.position + 1) % choices_;
@@ -252,9 +252,9 @@ class Script final : public session::Participant,
     }
     if (!is_done_ && now == deed_.stage && times_[now] == deed_.time) do_it();
     const bool is_paused = status_.stage == "paused";
-    if (is_paused && !std::exchange(had_tea_, true)) clock_.pass(kTea);
-    if (is_paused && polls_ >= kPolls) press(What::resume);
-    if (!is_paused && status_.needs_consent && polls_ >= kPolls) press(What::arm);
+    if (is_paused && !std::exchange(had_tea_, true)) clock_.advance(kTea);
+    if (is_paused && polls_ >= kPolls) press(Action::resume);
+    if (!is_paused && status_.needs_consent && polls_ >= kPolls) press(Action::arm);
   }
   void do_it() {
     is_done_ = true;
@@ -264,14 +264,14 @@ class Script final : public session::Participant,
     if (deed_.what == "own-stop") wants_stop_ = true;
     if (deed_.what == "abort") keys_ += "ayes\rwanted to go\r";
     if (deed_.what == "note") keys_ += "nthe telephone rang\rdno-curtain\rhalf of wha";
-    if (deed_.what == "stop") press(What::comfort_stop);
-    if (deed_.what == "pause") press(What::pause);
+    if (deed_.what == "stop") press(Action::comfort_stop);
+    if (deed_.what == "pause") press(Action::pause);
   }
-  void press(What what) {
+  void press(Action what) {
     if (!desk_.view().allows(what)) return;
     if (console_) return console_->click(what);
-    if (desk_.view().question.is_own()) keys_ += kEscape;
-    const bool asks_why = what == What::pause || what == What::comfort_stop;
+    if (desk_.view().question.is_from_experimenter()) keys_ += kEscape;
+    const bool asks_why = what == Action::pause || what == Action::comfort_stop;
     keys_ += app::kExperimenterActions.at(static_cast<std::size_t>(what)).key;
     if (asks_why) keys_ += '\r';
   }
@@ -305,7 +305,7 @@ class Script final : public session::Participant,
 /// Practice as the study has it, on blank planes where a trial has one.
 study::Practice scripted_practice(const study::Study& study, const study::ScheduleDraw& draw,
                                   int round) {
-  if (study::ask_of(study).planes > 1) return study::practice_of(study, draw, round);
+  if (study::trial_question_of(study).planes > 1) return study::practice_of(study, draw, round);
   study::Practice practice{.labels = {"sand", "cork"}, .trials = {}, .criterion = 2, .rounds = 1};
   for (const int right : {0, 1}) {
     practice.trials.push_back({.place = {.trial = right + 1},

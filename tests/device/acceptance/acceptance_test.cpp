@@ -105,7 +105,7 @@ TEST_CASE("an acceptance finds a wrong sign on any axis, refuses it, and pulls a
     for (const DeviceAxis axis : kDeviceAxes) {
       CAPTURE(name, name_of(axis));
       DeviceModel model = device_model(name);
-      component(model.planted.force_sign_scale, axis) = -1.0;
+      component(model.planted_faults.force_sign_scale, axis) = -1.0;
       WatchedRehearsal bench(model);
       const Certificate certificate = accept_device(bench, bench.person(), {}).certificate;
       CHECK_FALSE(certificate.passed());
@@ -126,7 +126,7 @@ TEST_CASE("an acceptance finds a force that is 20 percent off on one axis, and r
       for (const DeviceAxis axis : kDeviceAxes) {
         CAPTURE(name, scale, name_of(axis));
         DeviceModel model = device_model(name);
-        component(model.planted.force_sign_scale, axis) = scale;
+        component(model.planted_faults.force_sign_scale, axis) = scale;
         const Certificate certificate = rehearsed(model);
         check_found(axis_of(certificate, axis).scale(), scale, 0.09);
         CHECK_FALSE(certificate.passed());
@@ -163,9 +163,9 @@ TEST_CASE("an acceptance finds planted parameters through noise, whatever its se
     CAPTURE(seed);
     DeviceModel model = device_model("falcon");
     model.delay_ticks = 3;
-    model.planted.position_noise_mm = 0.02;
-    model.planted.gravity_n = 0.6;
-    model.planted.seed = seed;
+    model.planted_faults.position_noise_mm = 0.02;
+    model.planted_faults.gravity_n = 0.6;
+    model.planted_faults.seed = seed;
     const Certificate certificate = rehearsed(model);
     INFO(joined_lines(certificate.failures()));
     CHECK(certificate.passed());
@@ -187,8 +187,8 @@ TEST_CASE("an acceptance records what it could not measure, and why") {
   const Certificate certificate = rehearsed(model, {.skip = {"wall", "shake"}});
   CHECK(certificate.passed());
   const auto why = [&](const std::string& what) {
-    const auto found = std::ranges::find(certificate.not_measured, what, &NotMeasured::what);
-    return found == certificate.not_measured.end() ? std::string() : found->why;
+    const auto found = std::ranges::find(certificate.not_measured, what, &NotMeasured::measurement);
+    return found == certificate.not_measured.end() ? std::string() : found->reason;
   };
   CHECK_FALSE(certificate.step_mm);
   CHECK_FALSE(why("encoder step").empty());
@@ -217,9 +217,9 @@ TEST_CASE("an acceptance refuses devices that fall silent, are lost, tremble, st
     CHECK_FALSE(certificate.passed());
     CHECK(has_line(certificate.failures(), places));
   };
-  refused("stale_sample", [](DeviceModel& m) { m.planted.silent_after_s = 60.0; });
-  refused("link_lost", [](DeviceModel& m) { m.planted.lost_after_s = 30.0; });
-  refused("mm", [](DeviceModel& m) { m.planted.position_noise_mm = 0.15; });
+  refused("stale_sample", [](DeviceModel& m) { m.planted_faults.silent_after_s = 60.0; });
+  refused("link_lost", [](DeviceModel& m) { m.planted_faults.lost_after_s = 30.0; });
+  refused("mm", [](DeviceModel& m) { m.planted_faults.position_noise_mm = 0.15; });
   refused("axis", [](DeviceModel& m) { m.coulomb_n = 2.0; });
   refused("5 ms", [](DeviceModel& m) { m.delay_ticks = 8; });
   refused("0.1 mm", [](DeviceModel& m) { m.position_step_mm = 0.2; });

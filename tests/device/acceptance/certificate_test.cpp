@@ -55,7 +55,7 @@ TEST_CASE("an acceptance's certificate is read as it was written, with its hash"
   REQUIRE(certificate.passed());
   const std::string text = device::certificate_json(certificate);
   replace_file(path, text);
-  const device::ReadCertificate read = device::read_certificate(path);
+  const device::HashedCertificate read = device::read_certificate(path);
   CHECK(device::certificate_json(read.certificate) == text);
   CHECK(read.certificate.made == certificate.made);
   CHECK(read.hash == sha256_of_file(path));

@@ -25,7 +25,7 @@ DeviceModel drawn_device(const std::string& name, std::uint64_t index) {
   model.coulomb_n *= random.uniform(0.5, 1.5);
   model.position_step_mm *= random.uniform(0.5, 1.2);
   model.delay_ticks = static_cast<int>(random.uniform(0.0, 9.0));
-  model.planted.seed = index;
+  model.planted_faults.seed = index;
   if (random.uniform() > 0.33)
     model.lowpass_hz = std::exp(random.uniform(std::log(25.0), std::log(400.0)));
   return model;
@@ -64,7 +64,7 @@ DelayCoverage delay_coverage(const std::string& name, int devices) {
     if (delay) ++coverage.measured;
     if (delay && std::abs(delay->value - truth_ms) <= delay->error) ++coverage.held;
     for (const device::NotMeasured& one : certificate.not_measured) {
-      if (one.what == "delay on axis x") coverage.unclear.insert(one.why);
+      if (one.measurement == "delay on axis x") coverage.unclear.insert(one.reason);
     }
   }
   return coverage;

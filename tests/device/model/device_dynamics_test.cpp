@@ -14,7 +14,7 @@ namespace {
 
 using device::DeviceDynamics;
 using device::DeviceModel;
-using Outside = DeviceDynamics::Outside;
+using TipLoad = DeviceDynamics::TipLoad;
 
 TEST_CASE("a held force moves a free mass as Newton says") {
   DeviceModel model = model_of(0.2);
@@ -61,7 +61,7 @@ TEST_CASE("friction falls from static to Coulomb with speed") {
   const double speed_mm_s = GENERATE(5.0, 20.0, 60.0);
   DeviceDynamics tip(model);
   // Heavy enough that one tick changes no speed.
-  const Outside heavy{.mass_kg = 1000.0};
+  const TipLoad heavy{.mass_kg = 1000.0};
   tip.tick({1000.0 * speed_mm_s + 0.2, 0.0, 0.0}, heavy);
   const double before = tip.true_velocity_mm_s().x;
   for (int i = 0; i < 10; ++i) tip.tick({}, heavy);
@@ -89,10 +89,10 @@ TEST_CASE("a velocity from n readings lags a steady acceleration by half of n - 
 
 TEST_CASE("noise has the planted deviation, no mean, and the same numbers from the same seed") {
   DeviceModel model = model_of(0.1);
-  model.planted.position_noise_mm = 0.02;
+  model.planted_faults.position_noise_mm = 0.02;
   DeviceDynamics tip(model);
   DeviceDynamics again(model);
-  model.planted.seed = 2;
+  model.planted_faults.seed = 2;
   DeviceDynamics other(model);
   double sum = 0.0;
   double squares = 0.0;
@@ -131,8 +131,8 @@ TEST_CASE("a command acts after the delay, within the peak, in whole steps") {
 
 TEST_CASE("planted faults turn and scale forces, and let the handle fall") {
   DeviceModel model = model_of(0.1);
-  model.planted.force_sign_scale = {-1.0, 1.2, 0.0};
-  model.planted.gravity_n = 0.5;
+  model.planted_faults.force_sign_scale = {-1.0, 1.2, 0.0};
+  model.planted_faults.gravity_n = 0.5;
   DeviceDynamics tip(model);
   tip.tick({0.4, 0.5, 0.6}, {});
   CHECK(tip.delivered_force_n().x == -0.4);
@@ -191,7 +191,7 @@ TEST_CASE("a tick neither allocates nor locks, with every stage in use") {
   model.static_n = 0.4;
   model.stribeck_mm_s = 5.0;
   model.lowpass_hz = 200.0;
-  model.planted.position_noise_mm = 0.01;
+  model.planted_faults.position_noise_mm = 0.01;
   DeviceDynamics tip(model);
   static_cast<void>(take_realtime_offences());
   {

@@ -40,7 +40,7 @@ DeviceModel full_model() {
   model.stribeck_mm_s = 7.0;
   model.friction = FrictionShape::per_axis;
   model.lowpass_hz = 120.0;
-  model.planted = {{-1.0, 1.2, 1.0}, 0.01, 0.3, 5.0, 6.0, 77};
+  model.planted_faults = {{-1.0, 1.2, 1.0}, 0.01, 0.3, 5.0, 6.0, 77};
   return model;
 }
 
@@ -60,8 +60,8 @@ TEST_CASE("a model round-trips through its file") {
     CHECK(device::device_model_json(again) == text);
     CHECK(again.mass_kg == model.mass_kg);
     CHECK(again.structure.stiffness_n_per_mm == model.structure.stiffness_n_per_mm);
-    CHECK(again.planted.force_sign_scale == model.planted.force_sign_scale);
-    CHECK(again.planted.seed == model.planted.seed);
+    CHECK(again.planted_faults.force_sign_scale == model.planted_faults.force_sign_scale);
+    CHECK(again.planted_faults.seed == model.planted_faults.seed);
     CHECK(again.provenance.size() == model.provenance.size());
   }
 }
@@ -110,11 +110,11 @@ TEST_CASE("a model that was made in code is checked before it runs") {
       [](DeviceModel& m) -> double& { return m.workspace->max_mm.y; },
       [](DeviceModel& m) -> double& { return m.workspace->min_mm.x; },
       [](DeviceModel& m) -> double& { return m.max_stiffness_n_per_mm; },
-      [](DeviceModel& m) -> double& { return m.planted.force_sign_scale.z; },
-      [](DeviceModel& m) -> double& { return m.planted.position_noise_mm; },
-      [](DeviceModel& m) -> double& { return m.planted.gravity_n; },
-      [](DeviceModel& m) -> double& { return m.planted.silent_after_s; },
-      [](DeviceModel& m) -> double& { return m.planted.lost_after_s; }};
+      [](DeviceModel& m) -> double& { return m.planted_faults.force_sign_scale.z; },
+      [](DeviceModel& m) -> double& { return m.planted_faults.position_noise_mm; },
+      [](DeviceModel& m) -> double& { return m.planted_faults.gravity_n; },
+      [](DeviceModel& m) -> double& { return m.planted_faults.silent_after_s; },
+      [](DeviceModel& m) -> double& { return m.planted_faults.lost_after_s; }};
   CHECK_NOTHROW(check_device_model(full_model()));
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     INFO(i);

@@ -13,7 +13,7 @@ using device::HandKind;
 using device::HandOptions;
 using device::HeldDevice;
 using Complex = std::complex<double>;
-using Outside = DeviceDynamics::Outside;
+using TipLoad = DeviceDynamics::TipLoad;
 
 /// The linear part of a shipped model.
 DeviceModel linear_part(const DeviceModel& model) {
@@ -157,7 +157,7 @@ TEST_CASE("law 8: a wall with K (T / 2 + delay) below the damping settles, and a
     model.delay_ticks = delay_ticks;
     model.zero_order_hold = true;
     DeviceDynamics tip(model);
-    const Outside push{{0.0, 0.0, -0.7}, 0.0, {damping, damping, damping}};
+    const TipLoad push{{0.0, 0.0, -0.7}, 0.0, {damping, damping, damping}};
     tip.place({0.0, 0.0, -0.7 / stiffness_n_per_mm});
     for (int i = 0; i < delay_ticks; ++i) tip.tick({0.0, 0.0, 0.7}, push);
     Swing first;

@@ -11,7 +11,7 @@ namespace {
 using device::ModelledDevice;
 
 /// A person who holds the handle at a place in the wall's frame, and presses.
-device::DeviceDynamics::Outside held(Vec3 position_mm, Vec3 place_mm, double push_n) {
+device::DeviceDynamics::TipLoad held(Vec3 position_mm, Vec3 place_mm, double push_n) {
   return {0.2 * (place_mm - position_mm) + Vec3{0.0, 0.0, -push_n}, 0.1, {0.008, 0.008, 0.008}};
 }
 
@@ -75,7 +75,7 @@ TEST_CASE("a hand gets the time and the true state of the tip") {
     last_s = time_s;
     CHECK(position_mm == device.dynamics().true_position_mm());
     CHECK(velocity_mm_s == device.dynamics().true_velocity_mm_s());
-    return device::DeviceDynamics::Outside{{1.0, 0.0, 0.0}, 0.1};
+    return device::DeviceDynamics::TipLoad{{1.0, 0.0, 0.0}, 0.1};
   });
   for (int i = 0; i < 20; ++i) REQUIRE(device.write({}) == device::DeviceStatus::ok);
   CHECK(last_s == Approx(0.019));
@@ -118,7 +118,7 @@ TEST_CASE("a handle that is pushed out of the workspace stops there") {
 
 TEST_CASE("a device that falls silent is a stale one to the safety chain") {
   device::DeviceModel model = device::device_model("falcon");
-  model.planted.silent_after_s = 1.0;
+  model.planted_faults.silent_after_s = 1.0;
   ModelledDevice device(model);
   KeptSamples kept;
   const device::ServoReport report = press_on_wall(device, kept);
@@ -130,7 +130,7 @@ TEST_CASE("a device that falls silent is a stale one to the safety chain") {
 
 TEST_CASE("a device whose link is lost says so") {
   device::DeviceModel model = device::device_model("touch");
-  model.planted.lost_after_s = 0.5;
+  model.planted_faults.lost_after_s = 0.5;
   ModelledDevice device(model);
   KeptSamples kept;
   const device::ServoReport report = press_on_wall(device, kept);

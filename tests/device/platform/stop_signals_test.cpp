@@ -81,7 +81,7 @@ const std::map<std::string, int>& asking_signals() {
 }
 
 void put_things_in_order(const ServoControl& control) {
-  while (!control.emergency_stop_asked()) std::this_thread::yield();
+  while (!control.emergency_stop_requested()) std::this_thread::yield();
 }
 
 void leave_by(const std::string& way, const ServoControl& control, const PipeDevice& device) {
@@ -197,7 +197,7 @@ TEST_CASE("without a signal there is no exit code, and only one handler may exis
   RestingDevice device;
   ServoControl control;
   const StopOnSignals stop(device, control);
-  CHECK_FALSE(StopOnSignals::asked());
+  CHECK_FALSE(StopOnSignals::stop_requested());
   CHECK(StopOnSignals::exit_code() == 0);
   CHECK(StopOnSignals::message().empty());
   CHECK_THROWS_AS(StopOnSignals(device, control), std::logic_error);
@@ -208,9 +208,9 @@ TEST_CASE("a program that was asked to end reports the signal") {
   ServoControl control;
   const StopOnSignals stop(device, control);
   std::raise(SIGTERM);
-  CHECK(StopOnSignals::asked());
+  CHECK(StopOnSignals::stop_requested());
   CHECK_THAT(StopOnSignals::message(), names("SIGTERM"));
-  CHECK(control.emergency_stop_asked());
+  CHECK(control.emergency_stop_requested());
   CHECK(device.halts == 1);
 }
 

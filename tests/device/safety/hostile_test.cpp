@@ -99,12 +99,13 @@ class Judge {
   void see(Vec3 force_n, bool is_fault) {
     const double slew_n = limits_.max_slew_n_per_s * tick_s_ + 2.0 * support_n_;
     if (!is_finite(force_n)) broken("not finite");
-    if (!is_sound(limits_) && force_n != Vec3{}) broken("force under unsound limits");
-    if (is_sound(limits_) && norm(force_n) > (limits_.max_force_n + support_n_) * kRounding)
+    if (!are_valid(limits_) && force_n != Vec3{}) broken("force under unsound limits");
+    if (are_valid(limits_) && norm(force_n) > (limits_.max_force_n + support_n_) * kRounding)
       broken("norm");
     if (is_fault && force_n != Vec3{}) broken("force under a fault");
     const bool drops = is_fault && force_n == Vec3{};
-    if (!drops && norm(force_n - last_n_) > slew_n * kRounding && is_sound(limits_)) broken("slew");
+    if (!drops && norm(force_n - last_n_) > slew_n * kRounding && are_valid(limits_))
+      broken("slew");
     last_n_ = force_n;
     forces_ += force_n == Vec3{} ? 0 : 1;
   }

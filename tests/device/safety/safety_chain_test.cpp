@@ -280,9 +280,9 @@ class LinkByLink {
   Vec3 next(Vec3 force_n, Vec3 support_n) {
     thermal_.heat(dot(sent_n_, sent_n_), 1.0);
     const double share = ramp_.next_share();
-    const Vec3 carried_n = share * device::within_norm(support_n, max_support_n_);
+    const Vec3 carried_n = share * device::limit_norm(support_n, max_support_n_);
     const double limit_n = thermal_.limit_n(norm(carried_n));
-    const Vec3 rendered_n = slew_.towards(device::within_norm(share * force_n, limit_n));
+    const Vec3 rendered_n = slew_.step_towards(device::limit_norm(share * force_n, limit_n));
     sent_n_ = rendered_n + carried_n;
     return rendered_n;
   }

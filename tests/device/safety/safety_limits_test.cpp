@@ -16,7 +16,7 @@ device::DeviceInfo device_of(double max_force_n, double continuous_force_n) {
 }
 
 TEST_CASE("the default limits are sound") {
-  CHECK(device::is_sound({}));
+  CHECK(device::are_valid({}));
 }
 
 TEST_CASE("a limit out of its range is unsound, whichever it is") {
@@ -29,23 +29,23 @@ TEST_CASE("a limit out of its range is unsound, whichever it is") {
   const double value = GENERATE(-1.0, kNaN, -kInfinity);
   device::SafetyLimits limits;
   limits.*limit = value;
-  CHECK_FALSE(device::is_sound(limits));
+  CHECK_FALSE(device::are_valid(limits));
 }
 
 TEST_CASE("force and ramp must be finite, the limits that switch a link off need not") {
-  CHECK_FALSE(device::is_sound({.max_force_n = kInfinity, .max_slew_n_per_s = kInfinity}));
-  CHECK_FALSE(device::is_sound({.ramp_up_s = kInfinity}));
-  CHECK_FALSE(device::is_sound({.max_support_n = kInfinity}));
-  CHECK(device::is_sound({.max_slew_n_per_s = kInfinity,
-                          .max_speed_mm_s = kInfinity,
-                          .engage_force_n = kInfinity,
-                          .stale_s = kInfinity,
-                          .frozen_s = kInfinity}));
+  CHECK_FALSE(device::are_valid({.max_force_n = kInfinity, .max_slew_n_per_s = kInfinity}));
+  CHECK_FALSE(device::are_valid({.ramp_up_s = kInfinity}));
+  CHECK_FALSE(device::are_valid({.max_support_n = kInfinity}));
+  CHECK(device::are_valid({.max_slew_n_per_s = kInfinity,
+                           .max_speed_mm_s = kInfinity,
+                           .engage_force_n = kInfinity,
+                           .stale_s = kInfinity,
+                           .frozen_s = kInfinity}));
 }
 
 TEST_CASE("a slew limit that cannot let go in time is unsound") {
-  CHECK(device::is_sound({.max_force_n = 3.3, .max_slew_n_per_s = 66.1}));
-  CHECK_FALSE(device::is_sound({.max_force_n = 3.3, .max_slew_n_per_s = 65.9}));
+  CHECK(device::are_valid({.max_force_n = 3.3, .max_slew_n_per_s = 66.1}));
+  CHECK_FALSE(device::are_valid({.max_force_n = 3.3, .max_slew_n_per_s = 65.9}));
 }
 
 TEST_CASE("on a device the smaller limits hold") {
@@ -78,9 +78,9 @@ TEST_CASE("the limit of a support is the device's") {
 }
 
 TEST_CASE("a device without a known force limit gets no force") {
-  CHECK_FALSE(device::is_sound(device::limits_on(device_of(kNaN, 0.0), {})));
-  CHECK_FALSE(device::is_sound(device::limits_on(device_of(3.3, kNaN), {})));
-  CHECK_FALSE(device::is_sound(device::limits_on(device_of(0.0, 0.0), {})));
+  CHECK_FALSE(device::are_valid(device::limits_on(device_of(kNaN, 0.0), {})));
+  CHECK_FALSE(device::are_valid(device::limits_on(device_of(3.3, kNaN), {})));
+  CHECK_FALSE(device::are_valid(device::limits_on(device_of(0.0, 0.0), {})));
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ struct Watched {
       time.step(milliseconds(2));
     }
   }
-  [[nodiscard]] bool is_stopped() const { return device.halts > 0 && control.stall_seen(); }
+  [[nodiscard]] bool is_stopped() const { return device.halts > 0 && control.stall_requested(); }
 
   RestingDevice device;
   device::ServoControl control;
@@ -147,7 +147,7 @@ TEST_CASE("a run whose callback stands still ends as stalled, on the system's cl
   device::Watchdog watchdog(device, control, heartbeat, milliseconds(50));
   // Stands still at a tick until the watchdog has seen it.
   ForceBy force([&control](const device::DeviceSample& sample) {
-    while (sample.sequence == 200 && !control.stall_seen()) std::this_thread::yield();
+    while (sample.sequence == 200 && !control.stall_requested()) std::this_thread::yield();
     return Vec3{0.0, 0.0, 0.4};
   });
   NoSamples sink;

@@ -18,7 +18,7 @@ device::ServoSample sample_of(std::int64_t tick) {
 TEST_CASE("a ring gives samples back in their order, in batches") {
   device::SampleRing ring(8);
   for (int i = 0; i < 5; ++i) CHECK(ring.push(sample_of(i)));
-  CHECK(ring.waiting() == 5);
+  CHECK(ring.size() == 5);
   std::array<device::ServoSample, 3> read;
   CHECK(ring.pop(read) == 3);
   CHECK(read[2].position_mm == sample_of(2).position_mm);
@@ -34,7 +34,7 @@ TEST_CASE("a ring holds its capacity and refuses more") {
   CHECK(ring.capacity() == capacity);
   for (std::size_t i = 0; i < capacity; ++i) REQUIRE(ring.push({}));
   CHECK_FALSE(ring.push({}));
-  CHECK(ring.waiting() == capacity);
+  CHECK(ring.size() == capacity);
 }
 
 TEST_CASE("a ring without room for a sample is refused") {
@@ -72,7 +72,7 @@ TEST_CASE("between two threads a ring loses nothing, repeats nothing and keeps t
   }
   reader.join();
   CHECK_FALSE(wrong);
-  CHECK(ring.waiting() == 0);
+  CHECK(ring.size() == 0);
 }
 
 }  // namespace

@@ -109,7 +109,7 @@ TEST_CASE(
       report = device::run_servo(device, force, kept, {.limit_ticks = 3'600'000}, clock,
                                  {.control = &control, .heartbeat = &beats});
     });
-    while (beats.load() < 200 && running.runs(std::chrono::milliseconds(1))) {
+    while (beats.load() < 200 && running.is_running(std::chrono::milliseconds(1))) {
     }
     throw std::runtime_error("the window is gone");
   };
@@ -126,11 +126,11 @@ TEST_CASE("a servo that ran to its end throws its exception once, and requests n
   device::ServoControl control;
   {
     device::RunningServo running(thread, control, [] { throw std::runtime_error("no field"); });
-    while (running.runs(std::chrono::milliseconds(1))) {
+    while (running.is_running(std::chrono::milliseconds(1))) {
     }
     CHECK_THROWS_WITH(running.finish(), "no field");
   }
-  CHECK_FALSE(control.emergency_stop_asked());
+  CHECK_FALSE(control.emergency_stop_requested());
 }
 
 TEST_CASE("requests are forgotten before a run, but stops hold until they are reset") {
@@ -140,13 +140,13 @@ TEST_CASE("requests are forgotten before a run, but stops hold until they are re
   control.emergency_stop();
   control.stall();
   control.clear_requests();
-  CHECK_FALSE(control.finish_asked());
-  CHECK_FALSE(control.comfort_stop_asked());
-  CHECK(control.emergency_stop_asked());
-  CHECK(control.stall_seen());
+  CHECK_FALSE(control.finish_requested());
+  CHECK_FALSE(control.comfort_stop_requested());
+  CHECK(control.emergency_stop_requested());
+  CHECK(control.stall_requested());
   control.reset();
-  CHECK_FALSE(control.emergency_stop_asked());
-  CHECK_FALSE(control.stall_seen());
+  CHECK_FALSE(control.emergency_stop_requested());
+  CHECK_FALSE(control.stall_requested());
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ TEST_CASE("the line's lag is half of its time, and its noise that of the formula
   // of readings that are off by themselves.
   double squares = 0.0;
   for (int place = 0; place < 9; ++place) {
-    estimate.forget();
+    estimate.reset();
     for (int i = 0; i < 9; ++i) {
       found = estimate.add({i == place ? 1.0 : 0.0, 0.0, 0.0}, microseconds(250 * i)).x;
     }

@@ -64,7 +64,8 @@ double texture_error(const Plane<float>& texture, const engine::Extraction<doubl
 
 void check_on_every_target(const GreyImage& image, int radius, double tolerance) {
   const engine::ExtractionOptions options = adaptive_options(radius);
-  const auto truth = engine::extract_texture<double>(image, options, engine::WantedPlanes::all());
+  const auto truth =
+      engine::extract_texture<double>(image, options, engine::RequestedPlanes::all());
   on_every_simd_target([&] {
     CHECK(texture_error(engine::extract_texture<float>(image, options).texture, truth) < tolerance);
   });
@@ -107,7 +108,7 @@ TEST_CASE("the adaptive kernels keep their precision where CSGV is small and tex
 
 TEST_CASE("the adaptive kernels compute a ramp's CSGV exactly, even on the branch point") {
   on_every_simd_target([] {
-    engine::WantedPlanes wanted{.csgv = true};
+    engine::RequestedPlanes wanted{.csgv = true};
     GreyImage image(40, 60);
     for (int y = 0; y < 40; ++y) {
       for (int x = 0; x < 60; ++x) image.at(y, x) = static_cast<std::uint8_t>(4 * x + 3);
@@ -119,9 +120,9 @@ TEST_CASE("the adaptive kernels compute a ramp's CSGV exactly, even on the branc
 
 void check_by_products(const GreyImage& image) {
   const auto truth =
-      engine::extract_texture<double>(image, adaptive_options(2), engine::WantedPlanes::all());
+      engine::extract_texture<double>(image, adaptive_options(2), engine::RequestedPlanes::all());
   const auto result =
-      engine::extract_texture<float>(image, adaptive_options(2), engine::WantedPlanes::all());
+      engine::extract_texture<float>(image, adaptive_options(2), engine::RequestedPlanes::all());
   CHECK(largest_relative_difference(result.csgv, truth.csgv) < 5e-7);
   CHECK(largest_difference(result.sub_band_ll, truth.sub_band_ll) < 5e-5);
   CHECK(largest_difference(result.sub_band_lh, truth.sub_band_lh) < 5e-5);
@@ -154,7 +155,7 @@ TEST_CASE(
   const GreyImage image = cloth_image({651, 619});
   const Plane<double> truth = engine::extract_texture<double>(image, adaptive_options(2)).texture;
   on_every_simd_target([&] {
-    engine::WantedPlanes wanted;
+    engine::RequestedPlanes wanted;
     wanted.picture = wanted.force = true;
     const auto result = engine::extract_texture<float>(image, adaptive_options(2), wanted);
     CHECK(result.texture == engine::extract_texture<float>(image, adaptive_options(2)).texture);
@@ -168,7 +169,7 @@ TEST_CASE(
 
 /// Holds the planes of an image that is worked on in pieces against double, and against one thread.
 void check_pieces(const GreyImage& image, double tolerance) {
-  engine::WantedPlanes wanted;
+  engine::RequestedPlanes wanted;
   wanted.picture = wanted.order = wanted.csgv = true;
   const auto truth = engine::extract_texture<double>(image, adaptive_options(2), wanted);
   on_every_simd_target([&] {
@@ -189,7 +190,7 @@ void check_pieces(const GreyImage& image, double tolerance) {
 
 TEST_CASE("a megapixel is extracted by several threads at once, to the same digits as by one") {
   const GreyImage image = cloth_image({1003, 1009});
-  REQUIRE(static_cast<std::int64_t>(image.size()) >= engine::kThreadsFromPixels);
+  REQUIRE(static_cast<std::int64_t>(image.size()) >= engine::kMinParallelPixels);
   check_pieces(image, kPhotographTolerance);
 }
 
@@ -203,7 +204,7 @@ Plane<float> texture_of(const GreyImage& image, int radius, double order) {
 TEST_CASE("an image that is processed in tiles has the planes of double, at every tile's ends") {
   for (const Size size : {Size{3, 700'003}, Size{1447, 1450}}) {
     const GreyImage image = noise_image(size);
-    REQUIRE(static_cast<std::int64_t>(image.size()) >= engine::kLargeFromPixels);
+    REQUIRE(static_cast<std::int64_t>(image.size()) >= engine::kMinLargePixels);
     check_pieces(image, kAnyTolerance);
     const Plane<double> fixed = engine::gl_texture<double>(image, 63, 0.55);
     on_every_simd_target(
@@ -213,7 +214,7 @@ TEST_CASE("an image that is processed in tiles has the planes of double, at ever
 
 TEST_CASE("an image that is processed in several strips has the CSGV of double") {
   const GreyImage image = noise_image({5, 2100});
-  engine::WantedPlanes wanted{.csgv = true};
+  engine::RequestedPlanes wanted{.csgv = true};
   const auto truth = engine::extract_texture<double>(image, adaptive_options(1), wanted);
   on_every_simd_target([&] {
     const auto result = engine::extract_texture<float>(image, adaptive_options(1), wanted);
@@ -224,7 +225,7 @@ TEST_CASE("an image that is processed in several strips has the CSGV of double")
 TEST_CASE("a reused extraction holds the wanted planes of the last image") {
   engine::Extraction<float> result;
   engine::extract_texture_into(noise_image({20, 30}), adaptive_options(3),
-                               engine::WantedPlanes::all(), result);
+                               engine::RequestedPlanes::all(), result);
   const GreyImage image = cloth_image({20, 30});
   const float* const texture = result.texture.samples().data();
   engine::extract_texture_into(image, adaptive_options(2), {}, result);
@@ -239,7 +240,7 @@ TEST_CASE("a reused extraction holds the wanted planes of the last image") {
 
 TEST_CASE("extract_sub_bands gives the sub-bands that an extraction gives") {
   const GreyImage image = noise_image({21, 36});
-  engine::WantedPlanes wanted{.sub_bands = true};
+  engine::RequestedPlanes wanted{.sub_bands = true};
   const auto expected = engine::extract_texture<float>(image, adaptive_options(2), wanted);
   engine::Extraction<float> result;
   engine::extract_sub_bands(image, result);

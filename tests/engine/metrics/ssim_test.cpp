@@ -51,7 +51,7 @@ void for_each_pair(Size size, const Visit& visit) {
 /// The deficits of the first scale, as ms_ssim() computes them.
 template <typename Real>
 engine::MeanDeficits deficits_of(const GreyImage& a, const GreyImage& b) {
-  return engine::mean_deficits<Real>(engine::centred(a, b), engine::Luminance::include);
+  return engine::mean_deficits<Real>(engine::centred_pair(a, b), engine::Luminance::include);
 }
 
 TEMPLATE_TEST_CASE("the deficits of an image and itself are exactly 0", "", float, double) {

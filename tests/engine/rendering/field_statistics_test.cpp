@@ -157,7 +157,7 @@ TEST_CASE("field_statistics finds the budget in the stiffness of a field that ha
   const TextureField field = random_field(50, 60, 4);
   const FieldView view = field.view();
   const StudyGains gains = engine::choose_gains({&view, 1}, {});
-  CHECK(engine::field_statistics(view, gains.of_field[0]).stiffness_p99_n_per_mm ==
+  CHECK(engine::field_statistics(view, gains.per_field[0]).stiffness_p99_n_per_mm ==
         Approx(0.4).epsilon(1e-9));
 }
 

@@ -89,7 +89,7 @@ Stiffness pooled_p99(const std::vector<TextureField>& fields, const StudyGains& 
   std::vector<double> normal;
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const FieldView view = fields[i].view();
-    const Gains gain = gains.of_field[i];
+    const Gains gain = gains.per_field[i];
     const auto along =
         stiffness_slowly(view, {&FieldSample::force_x, &FieldSample::force_y}, gain.tangential_n);
     const auto across = stiffness_slowly(view, {&FieldSample::height}, gain.normal_n);
@@ -171,40 +171,42 @@ TEST_CASE("choose_gains meets the stiffness budget exactly over all fields toget
 TEST_CASE("choose_gains meets the budget with a touchdown ramp, whose stiffness counts") {
   const std::vector<TextureField> fields = three_fields();
   RenderingOptions options = GENERATE(RenderingOptions{}, equalised());
-  const Gains without = engine::choose_gains(views_of(fields), options).of_field[0];
+  const Gains without = engine::choose_gains(views_of(fields), options).per_field[0];
   options.touchdown_ramp_n = GENERATE(0.01, 0.2, 1.0);
   const StudyGains gains = engine::choose_gains(views_of(fields), options);
   std::vector<double> stiffness;
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    const auto of_field = stiffness_with_ramp_slowly(fields[i].view(), options, gains.of_field[i]);
-    stiffness.insert(stiffness.end(), of_field.begin(), of_field.end());
-    CHECK(engine::field_statistics(fields[i].view(), gains.of_field[i], options)
-              .stiffness_p99_n_per_mm == Approx(percentile_slowly(of_field, 0.99)).epsilon(1e-6));
+    const auto per_field =
+        stiffness_with_ramp_slowly(fields[i].view(), options, gains.per_field[i]);
+    stiffness.insert(stiffness.end(), per_field.begin(), per_field.end());
+    CHECK(engine::field_statistics(fields[i].view(), gains.per_field[i], options)
+              .stiffness_p99_n_per_mm == Approx(percentile_slowly(per_field, 0.99)).epsilon(1e-6));
   }
   CHECK(percentile_slowly(stiffness, 0.99) == Approx(0.4).epsilon(1e-6));
-  CHECK(gains.of_field[0].normal_n == without.normal_n);
-  CHECK(gains.of_field[0].tangential_n < without.tangential_n);
+  CHECK(gains.per_field[0].normal_n == without.normal_n);
+  CHECK(gains.per_field[0].tangential_n < without.tangential_n);
 }
 
 TEST_CASE("choose_gains gives all fields one pair of gains unless they are equalised") {
   const std::vector<TextureField> fields = three_fields();
   const StudyGains gains = engine::choose_gains(views_of(fields), {});
-  REQUIRE(gains.of_field.size() == 3);
-  CHECK(gains.of_field[1] == gains.of_field[0]);
-  CHECK(gains.of_field[2] == gains.of_field[0]);
+  REQUIRE(gains.per_field.size() == 3);
+  CHECK(gains.per_field[1] == gains.per_field[0]);
+  CHECK(gains.per_field[2] == gains.per_field[0]);
 }
 
 TEST_CASE("choose_gains equalises the rms force of all fields") {
   const std::vector<TextureField> fields = three_fields();
   const StudyGains gains = engine::choose_gains(views_of(fields), equalised());
   const double tangential_n =
-      gains.of_field[0].tangential_n * tangential_rms(sampled(fields[0].view()).view());
-  const double normal_n = gains.of_field[0].normal_n * height_rms(sampled(fields[0].view()).view());
+      gains.per_field[0].tangential_n * tangential_rms(sampled(fields[0].view()).view());
+  const double normal_n =
+      gains.per_field[0].normal_n * height_rms(sampled(fields[0].view()).view());
   CHECK(tangential_n > 0.0);
   CHECK(normal_n > 0.0);
   for (std::size_t i = 1; i < fields.size(); ++i) {
     const FieldView view = fields[i].view();
-    const Gains gain = gains.of_field[i];
+    const Gains gain = gains.per_field[i];
     CHECK(gain.tangential_n * tangential_rms(sampled(view).view()) ==
           Approx(tangential_n).epsilon(1e-12));
     CHECK(gain.normal_n * height_rms(sampled(view).view()) == Approx(normal_n).epsilon(1e-12));
@@ -215,19 +217,19 @@ TEST_CASE("choose_gains gives zero where all fields are flat") {
   const std::vector<TextureField> fields = {flat_field(10, 10), flat_field(5, 5)};
   const RenderingOptions options = GENERATE(RenderingOptions{}, equalised());
   const StudyGains gains = engine::choose_gains(views_of(fields), options);
-  CHECK(gains.of_field == std::vector<Gains>{{}, {}});
+  CHECK(gains.per_field == std::vector<Gains>{{}, {}});
   CHECK_FALSE(gains.over_budget);
 }
 
 TEST_CASE("choose_gains leaves flat fields out of the budget") {
   std::vector<TextureField> fields = {random_field(40, 40, 5)};
-  const Gains alone = engine::choose_gains(views_of(fields), {}).of_field[0];
-  const Gains alone_equalised = engine::choose_gains(views_of(fields), equalised()).of_field[0];
+  const Gains alone = engine::choose_gains(views_of(fields), {}).per_field[0];
+  const Gains alone_equalised = engine::choose_gains(views_of(fields), equalised()).per_field[0];
   fields.push_back(flat_field(400, 400));
   const StudyGains gains = engine::choose_gains(views_of(fields), {});
-  CHECK(gains.of_field == std::vector<Gains>{alone, alone});
+  CHECK(gains.per_field == std::vector<Gains>{alone, alone});
   const StudyGains equal = engine::choose_gains(views_of(fields), equalised());
-  CHECK(equal.of_field == std::vector<Gains>{alone_equalised, Gains{}});
+  CHECK(equal.per_field == std::vector<Gains>{alone_equalised, Gains{}});
 }
 
 TEST_CASE("choose_gains uses the maximum where almost all of a field is flat") {
@@ -236,33 +238,33 @@ TEST_CASE("choose_gains uses the maximum where almost all of a field is flat") {
   const StudyGains gains = engine::choose_gains(views_of(fields), {});
   const auto norms =
       stiffness_slowly(fields[0].view(), {&FieldSample::force_x, &FieldSample::force_y},
-                       gains.of_field[0].tangential_n);
+                       gains.per_field[0].tangential_n);
   CHECK(percentile_slowly(norms, 0.99) == 0.0);
   CHECK(*std::ranges::max_element(norms) == Approx(0.4).epsilon(1e-6));
 }
 
 TEST_CASE("choose_gains cannot judge fields without interior pixels") {
   const std::vector<TextureField> thin = {random_field(2, 50, 6)};
-  CHECK(engine::choose_gains(views_of(thin), {}).of_field[0] == Gains{});
+  CHECK(engine::choose_gains(views_of(thin), {}).per_field[0] == Gains{});
   std::vector<TextureField> both = {random_field(40, 40, 5)};
-  const Gains alone = engine::choose_gains(views_of(both), {}).of_field[0];
+  const Gains alone = engine::choose_gains(views_of(both), {}).per_field[0];
   both.push_back(random_field(2, 50, 6));
-  CHECK(engine::choose_gains(views_of(both), {}).of_field == std::vector<Gains>{alone, alone});
+  CHECK(engine::choose_gains(views_of(both), {}).per_field == std::vector<Gains>{alone, alone});
 }
 
 TEST_CASE("choose_gains uses explicit gains unchanged and reports when they exceed the budget") {
   const std::vector<TextureField> fields = three_fields();
-  const Gains allowed = engine::choose_gains(views_of(fields), {}).of_field[0];
+  const Gains allowed = engine::choose_gains(views_of(fields), {}).per_field[0];
   RenderingOptions options{.gains = allowed};
   const StudyGains same = engine::choose_gains(views_of(fields), options);
-  CHECK(same.of_field == std::vector<Gains>(3, allowed));
+  CHECK(same.per_field == std::vector<Gains>(3, allowed));
   CHECK_FALSE(same.over_budget);
   options.touchdown_ramp_n = 0.2;
   CHECK(engine::choose_gains(views_of(fields), options).over_budget);
   options.touchdown_ramp_n = 0.0;
   options.gains = Gains{1.001 * allowed.tangential_n, 0.0};
   const StudyGains over = engine::choose_gains(views_of(fields), options);
-  CHECK(over.of_field == std::vector<Gains>(3, *options.gains));
+  CHECK(over.per_field == std::vector<Gains>(3, *options.gains));
   CHECK(over.over_budget);
   options.gains = Gains{0.0, 1.001 * allowed.normal_n};
   CHECK(engine::choose_gains(views_of(fields), options).over_budget);
@@ -281,9 +283,9 @@ TEST_CASE("choose_gains equalises explicit gains round their mean rms") {
   }
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const FieldView view = fields[i].view();
-    CHECK(gains.of_field[i].tangential_n * tangential_rms(sampled(view).view()) ==
+    CHECK(gains.per_field[i].tangential_n * tangential_rms(sampled(view).view()) ==
           Approx(mean_tangential_n).epsilon(1e-12));
-    CHECK(gains.of_field[i].normal_n * height_rms(sampled(view).view()) ==
+    CHECK(gains.per_field[i].normal_n * height_rms(sampled(view).view()) ==
           Approx(mean_normal_n).epsilon(1e-12));
   }
 }

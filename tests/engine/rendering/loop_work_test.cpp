@@ -80,7 +80,7 @@ Plane<double> hostile_texture(int which) {
 
 engine::RenderingModel model_at_budget(engine::FieldView field,
                                        const engine::RenderingOptions& options) {
-  return {field, options, engine::choose_gains({&field, 1}, options).of_field[0]};
+  return {field, options, engine::choose_gains({&field, 1}, options).per_field[0]};
 }
 
 /// A closed path of random corners on, beside and above the plane, down to the stated load's depth.

@@ -138,7 +138,7 @@ TEST_CASE("PaperModel takes the slopes of a sum of fields from their own plane")
   const std::array<engine::FieldWithGains, 2> parts = {
       engine::FieldWithGains{one.view(), {0.01, 0.002}},
       engine::FieldWithGains{other.view(), {0.003, 0.004}}};
-  const engine::TextureField sum = engine::applied_sum(parts);
+  const engine::TextureField sum = engine::sum_with_gains(parts);
   const engine::PaperModel both(sum.view(), {}, {1.0, 1.0});
   const engine::PaperModel first(one.view(), {}, parts[0].gains);
   const engine::PaperModel second(other.view(), {}, parts[1].gains);

@@ -34,7 +34,7 @@ void append_stiffness(engine::FieldView field, engine::RenderingOptions options,
       constexpr double kDeepMm = -1e3;  // all pixels in contact
       const auto deep_n = [&](double x_mm, double y_mm) { return force_n(x_mm, y_mm, kDeepMm).z; };
       const double top_mm = force_n(at.x, at.y, kDeepMm).z / options.stiffness_n_per_mm + kDeepMm;
-      const double z_mm = top_mm - engine::kStatedLoadN / options.stiffness_n_per_mm;
+      const double z_mm = top_mm - engine::kReferenceLoadN / options.stiffness_n_per_mm;
       const Vec3 along = (0.5 / pitch_mm) * (force_n(at.x + pitch_mm, at.y, z_mm) -
                                              force_n(at.x - pitch_mm, at.y, z_mm));
       const Vec3 down = (0.5 / pitch_mm) * (force_n(at.x, at.y + pitch_mm, z_mm) -
@@ -54,7 +54,7 @@ double stiffest_p99(const std::vector<engine::TextureField>& fields,
                     const engine::RenderingOptions& options, const engine::StudyGains& gains) {
   Stiffness all;
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    append_stiffness(fields[i].view(), options, gains.of_field[i], all);
+    append_stiffness(fields[i].view(), options, gains.per_field[i], all);
   }
   return std::max(percentile_slowly(all.lateral_n_per_mm, 0.99),
                   percentile_slowly(all.normal_n_per_mm, 0.99));
@@ -75,8 +75,8 @@ TEST_CASE("choose_gains gives surfaces the height at which their stiffness meets
   options.texture_stiffness_n_per_mm = GENERATE(0.01, 0.4, 5.0);
   options.stiffness_n_per_mm = GENERATE(0.4, 3.0);
   const engine::StudyGains gains = engine::choose_gains(views_of(fields), options);
-  CHECK(gains.of_field[0].height_mm > 0.0);
-  CHECK(gains.of_field[0].tangential_n == 0.0);
+  CHECK(gains.per_field[0].height_mm > 0.0);
+  CHECK(gains.per_field[0].tangential_n == 0.0);
   CHECK_FALSE(gains.over_budget);
   CHECK(stiffest_p99(fields, options, gains) ==
         Approx(options.texture_stiffness_n_per_mm).epsilon(1e-5));
@@ -92,7 +92,7 @@ TEST_CASE("choose_gains gives surfaces the same rms lateral force when they are 
   std::vector<double> rms_n;
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const engine::FieldView view = fields[i].view();
-    rms_n.push_back(engine::field_statistics(view, gains.of_field[i], options).tangential_rms_n);
+    rms_n.push_back(engine::field_statistics(view, gains.per_field[i], options).tangential_rms_n);
   }
   CHECK(rms_n[0] > 0.0);
   CHECK(rms_n[1] == Approx(rms_n[0]).epsilon(1e-12));
@@ -102,10 +102,10 @@ TEST_CASE("choose_gains gives surfaces the same rms lateral force when they are 
 TEST_CASE("choose_gains takes an explicit height and says when it exceeds the budget") {
   const std::vector<engine::TextureField> fields = three_surfaces();
   engine::RenderingOptions options = surface_options();
-  const double allowed_mm = engine::choose_gains(views_of(fields), options).of_field[0].height_mm;
+  const double allowed_mm = engine::choose_gains(views_of(fields), options).per_field[0].height_mm;
   options.gains = engine::Gains{.height_mm = allowed_mm};
   const engine::StudyGains same = engine::choose_gains(views_of(fields), options);
-  CHECK(same.of_field == std::vector<engine::Gains>(3, *options.gains));
+  CHECK(same.per_field == std::vector<engine::Gains>(3, *options.gains));
   CHECK_FALSE(same.over_budget);
   options.gains = engine::Gains{.height_mm = 1.001 * allowed_mm};
   CHECK(engine::choose_gains(views_of(fields), options).over_budget);
@@ -113,14 +113,14 @@ TEST_CASE("choose_gains takes an explicit height and says when it exceeds the bu
 
 TEST_CASE("choose_gains leaves flat surfaces without height, and out of the pool") {
   const std::vector<engine::TextureField> flat = {flat_surface(10, 10), flat_surface(1, 7)};
-  CHECK(engine::choose_gains(views_of(flat), surface_options()).of_field ==
+  CHECK(engine::choose_gains(views_of(flat), surface_options()).per_field ==
         std::vector<engine::Gains>(2));
   std::vector<engine::TextureField> both = {random_surface(40, 40, 5)};
-  const engine::Gains alone = engine::choose_gains(views_of(both), surface_options()).of_field[0];
+  const engine::Gains alone = engine::choose_gains(views_of(both), surface_options()).per_field[0];
   both.push_back(flat_surface(300, 300));
-  CHECK(engine::choose_gains(views_of(both), surface_options()).of_field[0] == alone);
+  CHECK(engine::choose_gains(views_of(both), surface_options()).per_field[0] == alone);
   const std::vector<engine::TextureField> thin = {random_surface(2, 50, 6)};
-  CHECK(engine::choose_gains(views_of(thin), surface_options()).of_field[0] == engine::Gains{});
+  CHECK(engine::choose_gains(views_of(thin), surface_options()).per_field[0] == engine::Gains{});
 }
 
 TEST_CASE("choose_gains uses the maximum where almost all of a surface is a spline's faint tail") {
@@ -129,7 +129,7 @@ TEST_CASE("choose_gains uses the maximum where almost all of a surface is a spli
   Plane<double> texture(200, 200, 0.0);
   for (int x = 100; x < 110; ++x) texture.at(100, x) = x % 2 == 0 ? 40.0 : -30.0;
   const std::vector<engine::TextureField> fields = {engine::make_texture_field(texture, options)};
-  const engine::Gains gains = engine::choose_gains(views_of(fields), options).of_field[0];
+  const engine::Gains gains = engine::choose_gains(views_of(fields), options).per_field[0];
   Stiffness all;
   append_stiffness(fields[0].view(), options, gains, all);
   const auto stiffest =
@@ -159,7 +159,7 @@ TEST_CASE("field_statistics of a surface are those of its forces at the stated l
   const engine::RenderingOptions options = surface_options();
   const engine::TextureField field = random_surface(40, 50, 8);
   const engine::FieldView view = field.view();
-  const engine::Gains gains = engine::choose_gains({&view, 1}, options).of_field[0];
+  const engine::Gains gains = engine::choose_gains({&view, 1}, options).per_field[0];
   const engine::FieldStatistics statistics = engine::field_statistics(view, gains, options);
   const engine::SurfaceModel model(view, options, gains);
   double squares = 0.0;

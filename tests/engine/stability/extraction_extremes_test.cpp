@@ -24,7 +24,7 @@ Plane<Real> texture_of(const GreyImage& image, const engine::ExtractionOptions& 
 TEST_CASE("every texture of every extreme image is finite, bounded and the same each time") {
   for_every_extreme([]<typename Real>(const ExtractionCase& extraction, const GreyImage& image) {
     const auto result =
-        engine::extract_texture<Real>(image, extraction.options, engine::WantedPlanes::all());
+        engine::extract_texture<Real>(image, extraction.options, engine::RequestedPlanes::all());
     REQUIRE(engine::all_finite(result.texture));
     REQUIRE(largest_magnitude(result.texture) <= extraction.largest_texture);
     REQUIRE(engine::all_finite(result.force.x));
@@ -48,7 +48,7 @@ double excess_over_bound(const engine::Extraction<Real>& result, int radius) {
 }
 
 TEST_CASE("every order of an extreme image lies in 0 to 1, and its texture within 255 (1 - S_K)") {
-  engine::WantedPlanes wanted{.order = true};
+  engine::RequestedPlanes wanted{.order = true};
   for_every_extreme([&]<typename Real>(const ExtractionCase& extraction, const GreyImage& image) {
     const engine::ExtractionOptions& options = extraction.options;
     if (options.method != engine::Method::adaptive || options.norm != engine::Norm::additive)
@@ -88,7 +88,7 @@ bool is_odd(const ExtractionCase& extraction) {
 /// Whether no CSGV is near a branch point of the order map, where rounding could change the order.
 bool has_clear_branches(const GreyImage& image, const engine::ExtractionOptions& options) {
   if (options.method != engine::Method::adaptive) return true;
-  engine::WantedPlanes wanted{.csgv = true};
+  engine::RequestedPlanes wanted{.csgv = true};
   const auto csgv = engine::extract_texture<double>(image, options, wanted).csgv;
   return std::ranges::none_of(csgv.samples(), reference::is_at_branch_point);
 }

@@ -29,7 +29,7 @@ struct Comparison {
 
 void compare(const GreyImage& image, int radius, Comparison& counts) {
   engine::ExtractionOptions options{.radius = radius};
-  engine::WantedPlanes wanted;
+  engine::RequestedPlanes wanted;
   wanted.csgv = wanted.picture = true;
   const auto truth = engine::extract_texture<double>(image, options, wanted);
   const auto single = engine::extract_texture<float>(image, options, wanted);

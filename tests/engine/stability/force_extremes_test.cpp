@@ -59,7 +59,7 @@ TEST_CASE("gains of extreme textures are finite, and those of flat ones are zero
       for (const double budget : {1e-12, 0.4, 1e12}) {
         engine::RenderingOptions options{.texture_stiffness_n_per_mm = budget,
                                          .touchdown_ramp_n = ramp_n};
-        const engine::Gains gains = engine::choose_gains(views, options).of_field.front();
+        const engine::Gains gains = engine::choose_gains(views, options).per_field.front();
         CHECK(std::isfinite(gains.tangential_n));
         CHECK(std::isfinite(gains.normal_n));
         CHECK(gains.tangential_n >= 0.0);

@@ -22,8 +22,8 @@ engine::ExtractionOptions tv_gabor_options(double lambda, int max_steps = 300) {
 
 void check_decomposition(const GreyImage& image, double lambda) {
   const auto check = [&]<typename Real>() {
-    const auto result =
-        engine::extract_texture<Real>(image, tv_gabor_options(lambda), engine::WantedPlanes::all());
+    const auto result = engine::extract_texture<Real>(image, tv_gabor_options(lambda),
+                                                      engine::RequestedPlanes::all());
     REQUIRE(engine::all_finite(result.texture));
     REQUIRE(engine::all_finite(result.cartoon));
     REQUIRE(result.gap >= 0.0);

@@ -47,7 +47,7 @@ Certificate certificate_of(const engine::TvGaborProblem<double>& problem,
   const int height = problem.image.height();
   const int width = problem.image.width();
   engine::TorusPlane<double> plane(height, width, 1);
-  plane.in_blocks([&](const engine::RowBlock& block) {
+  plane.for_each_block([&](const engine::RowBlock& block) {
     engine::TorusPlane<double>::DivergenceRows q(plane, block);
     for (int y = block.begin; y < block.end; ++y) {
       engine::row_kernels<double>().clip(field.x.row(y).data(), field.y.row(y).data(),
@@ -59,7 +59,7 @@ Certificate certificate_of(const engine::TvGaborProblem<double>& problem,
   plane.finish_divergence();
   Certificate certificate{Plane<double>(height, width),
                           engine::certified_gap(problem, field, scale, plane, 1.0)};
-  plane.in_blocks([&](const engine::RowBlock& block) {
+  plane.for_each_block([&](const engine::RowBlock& block) {
     engine::TorusPlane<double>::Rows v(plane, block, 1 / problem.lambda);
     for (int y = block.begin; y < block.end; ++y) {
       v.go_to(y);

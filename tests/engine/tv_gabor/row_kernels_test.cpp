@@ -33,16 +33,16 @@ TEMPLATE_TEST_CASE("TV-Gabor's row kernels agree with their definition on every 
       const auto v = noise<TestType>(width, "v"), v_below = noise<TestType>(width, "v below");
       const auto old_x = noise<TestType>(width, "x"), old_y = noise<TestType>(width, "y");
       const auto was_x = noise<TestType>(width, "was x"), was_y = noise<TestType>(width, "was y");
-      auto z_x = old_x, z_y = old_y, former_x = was_x, former_y = was_y;
+      auto z_x = old_x, z_y = old_y, previous_x = was_x, previous_y = was_y;
       std::vector<TestType> target_x(width), target_y(width);
       engine::AdmmNumbers<TestType> numbers{.relaxation = TestType(1.5),
                                             .limit = TestType(0.75),
                                             .momentum = TestType(0.25),
-                                            .keep_former = true,
-                                            .b_alone = false};
+                                            .store_previous = true,
+                                            .b_only = false};
       engine::row_kernels<TestType>().admm(
           {f.data(), below.data(), v.data(), v_below.data(), z_x.data(), z_y.data(),
-           former_x.data(), former_y.data(), target_x.data(), target_y.data()},
+           previous_x.data(), previous_y.data(), target_x.data(), target_y.data()},
           width, numbers);
       for (std::size_t i = 0; i < width; ++i) {
         const std::size_t right = i + 1 == width ? 0 : i + 1;
@@ -50,7 +50,7 @@ TEMPLATE_TEST_CASE("TV-Gabor's row kernels agree with their definition on every 
         const double v_x = static_cast<double>(v[right]) - v[i];
         const double b_x = old_x[i] * 0.75 / std::max<double>(0.75, std::hypot(old_x[i], old_y[i]));
         const double next_x = 1.5 * (f_x - v_x) - 0.5 * (old_x[i] - b_x) + b_x;
-        REQUIRE(former_x[i] == Approx(next_x).margin(1e-5));
+        REQUIRE(previous_x[i] == Approx(next_x).margin(1e-5));
         REQUIRE(z_x[i] == Approx(next_x + 0.25 * (next_x - was_x[i])).margin(1e-5));
         REQUIRE(target_x[i] == Approx(target_of(f_x, z_x[i], z_y[i], 0.75)).margin(1e-5));
         REQUIRE(target_y[i] ==
@@ -59,17 +59,17 @@ TEMPLATE_TEST_CASE("TV-Gabor's row kernels agree with their definition on every 
       }
       // The last step: no momentum, the former value stays, and the targets are b.
       z_x = old_x, z_y = old_y;
-      const auto next_x = former_x, next_y = former_y;
-      former_x = was_x;
+      const auto next_x = previous_x, next_y = previous_y;
+      previous_x = was_x;
       numbers.momentum = 0;
-      numbers.keep_former = false;
-      numbers.b_alone = true;
+      numbers.store_previous = false;
+      numbers.b_only = true;
       engine::row_kernels<TestType>().admm(
           {f.data(), below.data(), v.data(), v_below.data(), z_x.data(), z_y.data(),
-           former_x.data(), former_y.data(), target_x.data(), target_y.data()},
+           previous_x.data(), previous_y.data(), target_x.data(), target_y.data()},
           width, numbers);
       CHECK(z_x == next_x);
-      CHECK(former_x == was_x);
+      CHECK(previous_x == was_x);
       for (std::size_t i = 0; i < width; ++i) {
         const double share = 0.75 / std::max<double>(0.75, std::hypot(next_x[i], next_y[i]));
         REQUIRE(target_x[i] == Approx(share * next_x[i]).margin(1e-5));

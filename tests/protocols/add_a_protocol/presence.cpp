@@ -39,15 +39,17 @@ class PresenceTask final : public study::Task {
       file.refuse_below("/trials/catch", "must be 0: half of the trials are smooth already");
     }
   }
-  std::string in_clear() const override { return R"({"each": )" + std::to_string(each_) + "}"; }
+  std::string plaintext_settings() const override {
+    return R"({"each": )" + std::to_string(each_) + "}";
+  }
   std::string rule(const Study&) const override {
     return "presence 1; each=" + std::to_string(each_);
   }
   int scored_trials(const Study&) const override { return each_; }
 
-  study::Ask ask(const Study& study, const study::Place&) const override {
-    return {.question =
-                study::Choose{.title = "What did you feel?", .choices = {{"texture"}, {"smooth"}}},
+  study::TrialQuestion ask(const Study& study, const study::Place&) const override {
+    return {.question = study::ChoiceQuestion{.title = "What did you feel?",
+                                              .choices = {{"texture"}, {"smooth"}}},
             .confidence_levels = study.session.confidence_levels};
   }
   std::unique_ptr<study::Order> order(const Study&, const ScheduleDraw& draw) const override {

@@ -127,7 +127,7 @@ TEST_CASE("a restarted block of the example presents the same again in another o
   const study::Study& study = tiny.key().study;
   const auto order = study::make_order(study, tiny.key().draw_of(1, study::Draws::rehearsal));
   const std::vector<study::Trial>& first = order->schedule().trials;
-  const std::vector<study::Trial> again = order->restarted(0, 0, 41);
+  const std::vector<study::Trial> again = order->redraw_block(0, 0, 41);
   REQUIRE(again.size() == first.size());
   CHECK(again.front().place.trial == 41);
   const auto scored = [](const std::vector<study::Trial>& trials) {

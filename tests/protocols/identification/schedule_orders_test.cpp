@@ -64,7 +64,7 @@ std::vector<study::Trial> without_catch(std::vector<study::Trial> trials) {
 std::vector<study::Trial> restarted(const study::Study& study, int enrolment, int block,
                                     int restarts_before, int first_trial) {
   return study::make_order(study, drawn(study, enrolment))
-      ->restarted(block, restarts_before, first_trial);
+      ->redraw_block(block, restarts_before, first_trial);
 }
 
 }  // namespace

@@ -226,6 +226,19 @@ TEST_CASE("answers that tell nothing of the threshold give none") {
   CHECK(guesses.low.value() > -20.0);
 }
 
+TEST_CASE("a threshold that is most likely beyond the levels has no number, even if answers rise") {
+  const std::array above{LevelCounts{-40, 100, 200}, LevelCounts{-24, 101, 200},
+                         LevelCounts{-8, 105, 200}, LevelCounts{0, 132, 200}};
+  const std::array below{LevelCounts{-40, 180, 200}, LevelCounts{-32, 199, 200},
+                         LevelCounts{-24, 200, 200}, LevelCounts{0, 200, 200}};
+  for (const auto& counts : {above, below}) {
+    const ThresholdEstimate found =
+        estimate_threshold(counts, decibels(-40, 0, 8), Shape::weibull, 0.5);
+    CHECK(found.threshold.censored != Censored::no);
+    CHECK_FALSE(found.threshold.level);
+  }
+}
+
 TEST_CASE("a number's interval may leave the levels") {
   const std::array counts{LevelCounts{-40, 5, 10}, LevelCounts{-32, 5, 10}, LevelCounts{-24, 8, 10},
                           LevelCounts{-16, 8, 10}, LevelCounts{-8, 8, 10},  LevelCounts{0, 8, 10}};

@@ -407,44 +407,43 @@ int main(int argc, char** argv) {
   if (runs < 20) return 2;
   fmt::print(
       "# Parameter recovery of thresholds\n\n"
-      "`scripts/recovery-procedures {0}` prints these tables. Each row: {0} observers, each with "
-      "one "
-      "track and a tenth as many\n"
-      "trials at the highest level, at least six. Unless a row says otherwise: Weibull functions "
-      "in "
-      "dB, guess .5, thresholds\n"
-      "uniform in -24 .. -14 dB, slopes log-uniform in 2 .. 6, lapse rates uniform in 0 .. .05. "
-      "Settings of procedures:\n"
-      "[thresholds.md](thresholds.md), \"Defaults\"; staircases begin at -10 dB; constant stimuli "
-      "are at -30, -25 .. -5 dB,\n"
-      "and their highest level is -5 dB.\n\n"
-      "*Quoted*: share of the tracks with a number. *Bias*, *RMSE*: of these, in dB. *Coverage*: "
-      "share of all tracks whose\n"
-      "interval holds the truth, open ones too; *of quoted*: of those with a number (Monte-Carlo "
-      "error {1:.3f}); *closed*: of\n"
-      "these, with an interval that is closed on both sides; *width*: its mean width in dB. All "
-      "but the first and the coverage\n"
-      "are left out where less than a tenth is quoted.\n\n"
+      "`scripts/recovery-procedures {0}` prints these tables. Each row has {0} observers, "
+      "each with one track and, at the\n"
+      "highest level, a tenth as many trials again (at least six). Unless a row states "
+      "otherwise: Weibull functions in dB,\n"
+      "guess .5, thresholds uniform in -24 .. -14 dB, slopes log-uniform in 2 .. 6, lapse "
+      "rates uniform in 0 .. .05. Settings\n"
+      "are in [thresholds.md](thresholds.md#defaults); staircases begin at -10 dB; constant "
+      "stimuli are at -30, -25 .. -5 dB.\n\n"
+      "- *Quoted*: share of the tracks with a number. *Bias*, *RMSE*: of these, in dB.\n"
+      "- *Coverage*: share of all tracks whose interval contains the true value, including "
+      "open intervals; *of quoted*: of\n"
+      "  tracks with a number (Monte-Carlo error {1:.3f}).\n"
+      "- *Closed*: share of tracks with a number whose interval is closed on both sides; "
+      "*width*: its mean width in dB.\n\n"
+      "If less than a tenth is quoted, only *quoted* and *coverage* are given.\n\n"
       "## Procedures\n\n"
-      "![Error and coverage of every procedure after 30, 60 and 120 trials]"
-      "(images/procedures-recovery.svg)\n\n"
-      "(`scripts/recovery-procedures figure` draws it from this table.) Reversals estimate the "
-      "point "
-      "of convergence.\n\n",
+      "![Error and coverage of every procedure after 30, 60 and 120 "
+      "trials](images/procedures-recovery.svg)\n\n"
+      "(`scripts/recovery-procedures figure` draws it from this table.) Means of reversals "
+      "estimate the point of convergence.\n\n",
       runs, std::sqrt(0.95 * 0.05 / runs));
   print_procedures(runs);
   fmt::print(
       "\n## Observers outside the assumptions\n\n"
-      "60 trials. The procedure's own grid has slopes of 1 to 8 and lapse rates of 0 to .2. The "
-      "truth of a logistic function is\n"
-      "its level with as many right as a Weibull function's at its threshold; of a threshold that "
-      "moves, the mean over the track.\n\n");
+      "Tracks have 60 trials. The procedure's own grid has slopes of 1 to 8 and lapse rates "
+      "of 0 to .2. The true threshold of\n"
+      "a logistic function is the level with the same proportion correct as at a Weibull "
+      "function's threshold; that of a moving\n"
+      "threshold is its mean over the track.\n\n");
   print_unassumed(runs);
-  fmt::print("\n## How many trials\n\nQUEST+ with those for whom 60 trials are few.\n\n");
+  fmt::print(
+      "\n## How many trials\n\n"
+      "QUEST+ with observers for whom 60 trials are few.\n\n");
   print_lengths(runs);
   fmt::print(
       "\n## Observers without a threshold\n\n"
-      "Share of the tracks with a number, by procedure and trials.\n\n");
+      "The share of tracks with a number, by procedure and trials.\n\n");
   print_without_threshold(runs);
   fmt::print("\n## Goodness of fit\n");
   print_goodness_of_fit(runs);

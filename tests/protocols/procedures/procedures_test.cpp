@@ -182,15 +182,15 @@ TEST_CASE("a record is checked by choosing again, and the first wrong level is n
     record.push_back({*now, random.uniform() < 0.8});
     block.answer(record.back().correct);
   }
-  CHECK_FALSE(first_not_chosen(settings, some_secret(5), record));
+  CHECK_FALSE(first_mismatch(settings, some_secret(5), record));
   std::vector<RecordedTrial> altered = record;
   altered[77].presentation.level += 1;
-  CHECK(first_not_chosen(settings, some_secret(5), altered).value() == 77);
+  CHECK(first_mismatch(settings, some_secret(5), altered).value() == 77);
   altered = record;
   altered[50].correct = !altered[50].correct;  // later levels of its track do not follow
-  CHECK(first_not_chosen(settings, some_secret(5), altered).value_or(0) > 50);
+  CHECK(first_mismatch(settings, some_secret(5), altered).value_or(0) > 50);
   record.push_back(record.back());
-  CHECK(first_not_chosen(settings, some_secret(5), record).value() == record.size() - 1);
+  CHECK(first_mismatch(settings, some_secret(5), record).value() == record.size() - 1);
 }
 
 TEST_CASE("another secret deals another order") {

@@ -205,7 +205,7 @@ TEST_CASE("scales are those of the section, in the study's language") {
   CHECK(scales[1] == study::Scale{"rough", "Wie rau?", "glatt", "rau", 7});
   CHECK(scales[1].min() == 1.0);
   CHECK(scales[1].max() == 7.0);
-  CHECK(study::ask_of(study).scales() == scales);
+  CHECK(study::trial_question_of(study).scales() == scales);
 }
 
 TEST_CASE("what of the section is impossible is refused with its place") {
@@ -417,12 +417,12 @@ TEST_CASE("nothing in clear, on the screen or in the number of trials tells a st
   json file = rating_file();
   file["rating"] = {{"scales", {{{"id", "fit"}}, rough_scale()}}};
   const study::Study study = study_of(file);
-  const json in_clear = json::parse(study.task->in_clear());
-  CHECK(in_clear.size() == 2);
-  CHECK(in_clear.at("anchors") == true);
-  REQUIRE(in_clear.at("scales").size() == 2);
-  CHECK(in_clear.at("scales").at(1) == rough_scale());
-  const std::string clear = study.task->in_clear() + study.task->rule(study);
+  const json plaintext_settings = json::parse(study.task->plaintext_settings());
+  CHECK(plaintext_settings.size() == 2);
+  CHECK(plaintext_settings.at("anchors") == true);
+  REQUIRE(plaintext_settings.at("scales").size() == 2);
+  CHECK(plaintext_settings.at("scales").at(1) == rough_scale());
+  const std::string clear = study.task->plaintext_settings() + study.task->rule(study);
   for (const char* word : {"granite", "linen", "wool", ".png", "adaptive", "tv-gabor"}) {
     CHECK(clear.find(word) == std::string::npos);
   }
@@ -431,7 +431,7 @@ TEST_CASE("nothing in clear, on the screen or in the number of trials tells a st
     CHECK(schedule.layout.empty());
     CHECK(schedule.trials.size() == kScored + kCatch);
     for (const study::Trial& trial : schedule.trials) {
-      const study::Ask ask = study.task->ask(study, trial.place);
+      const study::TrialQuestion ask = study.task->ask(study, trial.place);
       CHECK(ask.planes == 1);
       CHECK(ask.choices().empty());
       CHECK(ask.scales() == study::rating::scales_of(study));
@@ -445,13 +445,13 @@ TEST_CASE("nothing in clear, on the screen or in the number of trials tells a st
 TEST_CASE("an answer is one rating on each scale, between its ends") {
   json file = rating_file();
   file["rating"] = {{"scales", {{{"id", "fit"}}, rough_scale()}}};
-  const study::Ask ask = study::ask_of(study_of(file));
-  CHECK(study::mismatch_of(Rated{{0.0, 1.0}}, ask).empty());
-  CHECK(study::mismatch_of(Rated{{1.0, 7.0}}, ask).empty());
-  CHECK_THAT(study::mismatch_of(Rated{{0.5}}, ask), names("1 2"));
-  CHECK_THAT(study::mismatch_of(Rated{{1.1, 7.0}}, ask), names("fit"));
-  CHECK_THAT(study::mismatch_of(Rated{{0.5, 0.0}}, ask), names("rough"));
-  CHECK_THAT(study::mismatch_of(Chosen{0}, ask), names("0 0"));
+  const study::TrialQuestion ask = study::trial_question_of(study_of(file));
+  CHECK(study::mismatch_of(RatingAnswer{{0.0, 1.0}}, ask).empty());
+  CHECK(study::mismatch_of(RatingAnswer{{1.0, 7.0}}, ask).empty());
+  CHECK_THAT(study::mismatch_of(RatingAnswer{{0.5}}, ask), names("1 2"));
+  CHECK_THAT(study::mismatch_of(RatingAnswer{{1.1, 7.0}}, ask), names("fit"));
+  CHECK_THAT(study::mismatch_of(RatingAnswer{{0.5, 0.0}}, ask), names("rough"));
+  CHECK_THAT(study::mismatch_of(ChoiceAnswer{0}, ask), names("0 0"));
 }
 
 TEST_CASE("practice begins with the scale's ends, and no answer of it is right") {
@@ -493,7 +493,7 @@ TEST_CASE("a simulated rating study passes every check, and catch trials are rat
     CHECK(check.state == analysis::CheckState::passed);
   }
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.tiny().key());
-  const study::Ask ask = study::ask_of(outcomes.design);
+  const study::TrialQuestion ask = study::trial_question_of(outcomes.design);
   double scored_sum = 0.0;
   double catch_sum = 0.0;
   int scored = 0;
@@ -546,7 +546,7 @@ TEST_CASE("ratings are stored as they were given, and take the place of those be
   const record::AnswerBody body =
       record::from_json<record::AnswerBody>(as_recorded(lab.sink.events.back(), SecretKey{}).body);
   CHECK(body.trial == 1);
-  CHECK(body.answer == Answer{Rated{{0.125}}});
+  CHECK(body.answer == Answer{RatingAnswer{{0.125}}});
   CHECK_FALSE(body.confidence.has_value());
 }
 
@@ -600,9 +600,9 @@ TEST_CASE("a block that is restarted is the same for the same draw, and has the 
   CHECK_FALSE(order->is_adaptive());
   std::vector<study::Trial> block = order->schedule().trials;
   std::erase_if(block, [](const study::Trial& trial) { return trial.place.block != 1; });
-  const std::vector<study::Trial> restarted = order->restarted(1, 0, 100);
-  CHECK(study::make_order(study, draw_of(1))->restarted(1, 0, 100) == restarted);
-  CHECK(order->restarted(1, 1, 100) != restarted);
+  const std::vector<study::Trial> restarted = order->redraw_block(1, 0, 100);
+  CHECK(study::make_order(study, draw_of(1))->redraw_block(1, 0, 100) == restarted);
+  CHECK(order->redraw_block(1, 1, 100) != restarted);
   REQUIRE(restarted.size() == block.size());
   for (std::size_t i = 0; i < restarted.size(); ++i) {
     CHECK(restarted[i].place.trial == 100 + static_cast<int>(i));

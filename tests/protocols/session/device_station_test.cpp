@@ -95,7 +95,7 @@ TEST_CASE("a lost device is opened again and armed again") {
 TEST_CASE("after an interruption the same device waits for consent") {
   Bench bench;
   REQUIRE(bench.until_settled() == session::SupplyState::ready);
-  bench.station.interrupted();
+  bench.station.on_interruption();
   CHECK(bench.until_settled() == session::SupplyState::ready);
   CHECK(bench.cable.opened == 1);
   CHECK(bench.helper.consents == 2);

@@ -40,7 +40,7 @@ device::DeviceStatus FakeDevice::write(Vec3 force_n) noexcept {
   return lost_ ? device::DeviceStatus::fault : device::DeviceStatus::ok;
 }
 
-session::Attendant::Reply Helper::attend(const std::string& need) {
+session::Attendant::Reply Helper::poll(const std::string& need) {
   if (gives_up && !need.empty()) return Reply::stop;
   if (need.empty()) {
     ++consents;

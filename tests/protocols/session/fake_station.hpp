@@ -61,7 +61,7 @@ class Helper final : public session::Attendant {
  public:
   explicit Helper(Cable& cable) : cable_(cable) {}
 
-  [[nodiscard]] Reply attend(const std::string& need) override;
+  [[nodiscard]] Reply poll(const std::string& need) override;
 
   std::vector<std::string> needs;
   bool gives_up = false;

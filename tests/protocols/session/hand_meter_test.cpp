@@ -119,7 +119,7 @@ std::vector<std::optional<HandLevels>> read_over(double budget_n_per_mm, engine:
   const engine::TextureField field = engine::make_texture_field(texture, options);
   const engine::FieldView view = field.view();
   const engine::Gains gains = budget_n_per_mm > 0.0
-                                  ? engine::choose_gains({&view, 1}, options).of_field.front()
+                                  ? engine::choose_gains({&view, 1}, options).per_field.front()
                                   : engine::Gains{};
   const engine::RenderingModel model(view, options, gains);
   device::HandOptions hand{.push_n = push_n, .explore_s = 6.0};

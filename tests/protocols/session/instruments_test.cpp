@@ -68,13 +68,13 @@ TEST_CASE("instruments receive events and trial numbers, but nothing about stimu
   const int trial = course.session.current()->place.trial;
   course.session.present(course.now());
   const Clock::time_point began = Clock::now();
-  marks.plane_is_on(began);
+  marks.note_plane_on(began);
   marks.feel(at_height(10.0, 0));
   marks.feel(at_height(session::kLandingHeightMm - 0.1, 250));
   marks.feel(at_height(0.0, 251));
   course.session.end_exploring(course.now());
   course.session.explore_again(course.now());
-  marks.plane_is_on(began + std::chrono::seconds(1));
+  marks.note_plane_on(began + std::chrono::seconds(1));
   course.session.end_exploring(course.now());
   course.session.choose(0);
   course.session.confirm(course.now());
@@ -104,7 +104,7 @@ TEST_CASE("a session records the times of marks by both clocks, sealed") {
   session::SessionMarks marks(&kept, course.session, 1000.0);
   marks.begin();
   course.session.present(course.now());
-  marks.plane_is_on(Clock::now());
+  marks.note_plane_on(Clock::now());
   const std::optional<record::MarksBody> body = marks.take(course.clock);
   REQUIRE(body);
   CHECK_FALSE(marks.take(course.clock));
@@ -132,7 +132,7 @@ TEST_CASE("without instruments a session records nothing of them") {
   session::SessionMarks marks(nullptr, course.session, 1000.0);
   marks.begin();
   course.session.present(course.now());
-  marks.plane_is_on(Clock::now());
+  marks.note_plane_on(Clock::now());
   marks.feel(at_height(0.0, 0));
   marks.end();
   CHECK_FALSE(marks.take(course.clock));

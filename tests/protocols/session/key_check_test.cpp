@@ -29,7 +29,7 @@ std::string fault_of(const TinyStudy& study,
   study::StationKey station = station_of(study.key());
   change(station);
   return message_of<VerificationError>(
-      [&] { session::require_opens(study.key(), station, study.pack()); });
+      [&] { session::require_decryptable(study.key(), station, study.pack()); });
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ TEST_CASE("what a station seals opens with its study's key") {
     TinyStudyOptions options = with_pictures();
     options.comparison = comparison;
     const TinyStudy study(options);
-    CHECK_NOTHROW(session::require_opens(study.key(), station_of(study.key()), study.pack()));
+    CHECK_NOTHROW(session::require_decryptable(study.key(), station_of(study.key()), study.pack()));
   }
 }
 
@@ -60,21 +60,22 @@ TEST_CASE("every station of a divided study is proved, and an older file of one 
   study::StudyKey key = study.key();
   const std::vector<std::string> names = {"attic", "cellar"};
   std::vector<study::Station> stations = study::stations_named(names);
-  study::hand_out_enrolments(stations, 10);
-  study::divide(key, stations);
+  study::assign_enrolments(stations, 10);
+  study::assign_stations(key, stations);
   const study::StationKey older = study::station_key(key, "cellar");
   const study::StudyKey older_key = key;
   for (const std::string& name : names) {
-    CHECK_NOTHROW(session::require_opens(key, study::station_key(key, name), study.pack()));
+    CHECK_NOTHROW(session::require_decryptable(key, study::station_key(key, name), study.pack()));
   }
-  study::hand_out_enrolments(stations, 14);
-  study::divide(key, stations);
-  CHECK_THROWS_AS(session::require_opens(key, older, study.pack()), VerificationError);
-  CHECK_THROWS_AS(session::require_opens(key, station_of(study.key()), study.pack()),
+  study::assign_enrolments(stations, 14);
+  study::assign_stations(key, stations);
+  CHECK_THROWS_AS(session::require_decryptable(key, older, study.pack()), VerificationError);
+  CHECK_THROWS_AS(session::require_decryptable(key, station_of(study.key()), study.pack()),
                   VerificationError);
   const study::StationKey newer = study::station_key(key, "cellar");
-  CHECK_THROWS_AS(session::require_opens(older_key, newer, study.pack()), VerificationError);
-  CHECK_THROWS_AS(session::require_opens(study.key(), newer, study.pack()), VerificationError);
+  CHECK_THROWS_AS(session::require_decryptable(older_key, newer, study.pack()), VerificationError);
+  CHECK_THROWS_AS(session::require_decryptable(study.key(), newer, study.pack()),
+                  VerificationError);
 }
 
 TEST_CASE("a station's file that differs from the key in anything is refused") {
@@ -102,20 +103,20 @@ TEST_CASE("another study's pack, an altered field and an altered picture are ref
   options.secret = 2;
   const TinyStudy other(options);
   const study::StationKey station = station_of(study.key());
-  CHECK_THROWS_AS(session::require_opens(study.key(), station, other.pack()), Error);
+  CHECK_THROWS_AS(session::require_decryptable(study.key(), station, other.pack()), Error);
   const auto field =
       study.pack().folder() / (study.pack().manifest().entries.front().code + ".field");
   Bytes bytes = read_file(field);
   bytes.back() ^= 1U;
   replace_file(field, bytes);
-  CHECK_THROWS_WITH(session::require_opens(study.key(), station, study.pack()),
+  CHECK_THROWS_WITH(session::require_decryptable(study.key(), station, study.pack()),
                     names(study.pack().manifest().entries.front().code));
   bytes.back() ^= 1U;
   replace_file(field, bytes);
-  CHECK_NOTHROW(session::require_opens(study.key(), station, study.pack()));
+  CHECK_NOTHROW(session::require_decryptable(study.key(), station, study.pack()));
   const auto picture = study.key().study.folder / "bark0.png";
   replace_file(picture, std::string("another"));
-  CHECK_THROWS_WITH(session::require_opens(study.key(), station, study.pack()),
+  CHECK_THROWS_WITH(session::require_decryptable(study.key(), station, study.pack()),
                     names(picture.string()));
 }
 

@@ -192,8 +192,8 @@ bool is_finished_after(FaultVfs& vfs, const Fault& fault) {
   KilledSession session;
   vfs.plan(fault);
   const bool ended = session.start();
-  if (!vfs.struck()) return false;
-  vfs.start_anew();
+  if (!vfs.has_occurred()) return false;
+  vfs.restore_disk();
   {
     const record::StudyStore store = record::StudyStore::open(session.path, Access::read_only);
     REQUIRE_FALSE(store.first_fault());
@@ -208,7 +208,8 @@ bool is_finished_after(FaultVfs& vfs, const Fault& fault) {
 /// \return how many commits there are
 std::int64_t end_at_every_commit(Kind kind) {
   FaultVfs vfs;
-  Fault fault{.kind = kind, .at = 1, .only = DiskOperation::sync, .lasts = false, .seed = 3};
+  Fault fault{
+      .kind = kind, .at = 1, .only = DiskOperation::sync, .is_persistent = false, .seed = 3};
   while (is_finished_after(vfs, fault)) ++fault.at;
   return fault.at - 1;
 }
@@ -237,12 +238,12 @@ TEST_CASE("a session that is ended over and over loses and doubles nothing") {
       vfs.plan({.kind = kKinds[random.below(kKinds.size())],
                 .at = at,
                 .only = {},
-                .lasts = false,
+                .is_persistent = false,
                 .seed = random.bits()});
       ended = session.start();
-      if (!vfs.struck()) continue;
+      if (!vfs.has_occurred()) continue;
       ++ends;
-      vfs.start_anew();
+      vfs.restore_disk();
     }
     require_complete(session);
   }

@@ -25,7 +25,7 @@ class PersonWithHand final : public simulation::PromptParticipant {
     hand_.explore(static_cast<const device::SimulatedHand&>(mind_.begin_exploring(plane)));
     return station_.device();
   }
-  void exploring(device::ServoControl& servo) override {
+  void while_exploring(device::ServoControl& servo) override {
     if (hand_.explorations() > explored_) servo.finish();
   }
   void feel(const device::ServoSample& sample) noexcept override { mind_.feel(sample); }

@@ -222,7 +222,7 @@ class Acting final : public PersonAtStation {
     gate_ = false;
     return PersonAtStation::begin_exploring(plane);
   }
-  void exploring(device::ServoControl& servo) override {
+  void while_exploring(device::ServoControl& servo) override {
     if (!once_ || !acted_) act_(servo);
     acted_ = true;
     gate_ = true;
@@ -400,7 +400,7 @@ class SeenExplorer final : public session::Explorer {
     device::ServoControl control;
     const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(5);
     while (!is_seen_() && std::chrono::steady_clock::now() < give_up) {
-      participant.exploring(control);
+      participant.while_exploring(control);
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     return inner_.explore(force, plane, participant, options, trace);

@@ -83,7 +83,7 @@ Ran run(Participant& participant) {
 class CreepingClock final : public SessionClock {
  public:
   [[nodiscard]] Time now() override { return now_ += std::chrono::milliseconds(3); }
-  void pass(Time duration) override { now_ += duration; }
+  void advance(Time duration) override { now_ += duration; }
 
  private:
   Time now_{};
@@ -131,9 +131,9 @@ class AttendedExplorer final : public Explorer {
                                     Participant& participant, const device::ServoOptions& options,
                                     record::Trace& trace) override {
     device::ServoControl control;
-    participant.exploring(control);
-    participant.exploring(control);
-    was_stopped = control.comfort_stop_asked();
+    participant.while_exploring(control);
+    participant.while_exploring(control);
+    was_stopped = control.comfort_stop_requested();
     return usual_.explore(force, plane, participant, options, trace);
   }
 
@@ -156,6 +156,22 @@ class Insisting final : public session::Experimenter {
  private:
   bool insists_ = false;
   int asked_ = 0;
+};
+
+/// An experimenter who counts acknowledged answers, and those that the session has not stored yet.
+class Witness final : public session::Experimenter {
+ public:
+  explicit Witness(const Session& session) : session_(session) {}
+  void acknowledged(int /*trial*/) override {
+    ++acknowledged_answers;
+    too_early += session_.in_presentation() ? 1 : 0;
+  }
+
+  int acknowledged_answers = 0;
+  int too_early = 0;
+
+ private:
+  const Session& session_;
 };
 
 Ran run_with(Explorer& explorer, SessionClock& clock,
@@ -183,9 +199,9 @@ class Diary final : public session::Experimenter, public Participant {
   void see_pictures(const std::vector<std::string>& labels) override {
     person_.see_pictures(labels);
   }
-  [[nodiscard]] std::optional<StepReply> attend(const session::Step& step) override {
+  [[nodiscard]] std::optional<StepReply> show_step(const session::Step& step) override {
     moments.push_back({step, status_});
-    return person_.attend(step);
+    return person_.show_step(step);
   }
   [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override {
     return person_.begin_exploring(plane);
@@ -240,7 +256,7 @@ class Reluctant final : public DeviceSupply {
     if (wanted_ > 0) --wanted_;
     return wanted_ > 0 ? SupplyState::not_yet : SupplyState::ready;
   }
-  void interrupted() override { wanted_ = 3; }
+  void on_interruption() override { wanted_ = 3; }
 
  private:
   int wanted_ = 0;
@@ -321,13 +337,13 @@ TEST_CASE("the experimenter's status counts trials as the participant's window d
   for (const auto& [step, status] : ready) {
     CHECK(status.stage == "ready");
     CHECK(status.trial == step.trial);
-    CHECK(status.of == step.of);
+    CHECK(status.total == step.total);
     CHECK(status.practice == step.practice);
   }
   for (const auto& [step, status] : diary.all<AnswerStep>()) {
     CHECK(status.stage == "answering");
     CHECK(status.trial == step.trial);
-    CHECK(status.of == step.of);
+    CHECK(status.total == step.total);
     CHECK(status.practice == step.practice);
   }
   for (const auto& [step, status] : diary.all<FeedbackStep>()) {
@@ -449,6 +465,22 @@ TEST_CASE("a request to leave while the plane is on is obeyed once, however ofte
   CHECK(ran.count(record::EventKind::presented) == 1);
   CHECK(ran.count(record::EventKind::answered) == 0);
   CHECK(ran.count(record::EventKind::closed) == 0);
+}
+
+TEST_CASE("an answer is acknowledged only after it is stored") {
+  VirtualSessionClock clock;
+  session::VirtualExplorer explorer;
+  AlwaysReady devices;
+  Unlucky person(0);
+  static_cast<void>(ran_session([&](Session& session, const study::StudyKey& key,
+                                    const StimulusSource& source) {
+    Witness witness(session);
+    const SessionTally tally = session::run_session(
+        session, {key, source, person, clock, explorer, devices, device::kServoRateHz, witness});
+    CHECK(witness.acknowledged_answers == 5);
+    CHECK(witness.too_early == 0);
+    return tally;
+  }));
 }
 
 TEST_CASE("a session whose device is lost again and again is stopped") {

@@ -250,7 +250,7 @@ TEST_CASE("a pause that an answer waits for names the trial, and the answer has 
 
 record::TrialEvidence evidence_of(const session::Session& session, double height_mm) {
   record::TraceBody body{.trial = 1};
-  return session.packed(body, {}, {1000.0, {{{1.0, 2.0, height_mm}, {0.0, 0.0, 0.5}}}});
+  return session.pack_evidence(body, {}, {1000.0, {{{1.0, 2.0, height_mm}, {0.0, 0.0, 0.5}}}});
 }
 
 TEST_CASE("an answer is stored with the evidence kept last, and with no other") {
@@ -341,16 +341,16 @@ TEST_CASE("only the first contact of a presentation is recorded") {
 TEST_CASE("a break is due when the study says so") {
   study::TrialOptions options{.break_every = 2};
   Laboratory lab(4, options);
-  CHECK_FALSE(lab.session.break_due());
+  CHECK_FALSE(lab.session.is_break_due());
   lab.run_trial(0);
-  CHECK_FALSE(lab.session.break_due());
+  CHECK_FALSE(lab.session.is_break_due());
   lab.run_trial(0);
-  CHECK(lab.session.break_due());
+  CHECK(lab.session.is_break_due());
   lab.session.take_break(lab.now, "ten minutes");
-  CHECK_FALSE(lab.session.break_due());
+  CHECK_FALSE(lab.session.is_break_due());
   lab.run_trial(0);
   lab.run_trial(0);
-  CHECK_FALSE(lab.session.break_due());  // nothing comes after it
+  CHECK_FALSE(lab.session.is_break_due());  // nothing comes after it
 }
 
 TEST_CASE("after a pause the session continues in the phase where it stopped") {
@@ -373,7 +373,7 @@ TEST_CASE("a session that was stopped closes as incomplete") {
   CHECK(lab.last_body().at("complete") == false);
 }
 
-session::SealBlock no_secret() {
+session::SerialiseBlock no_secret() {
   return [](const std::vector<study::Trial>&) { return std::string("{}"); };
 }
 
@@ -491,7 +491,7 @@ TEST_CASE("resuming a session ends its pause, and asks nothing twice") {
   lab.session.tick(seconds(3), "curtain");
   lab.session.deviate(seconds(3), {"no-masking-noise", "no headphones"});
   lab.session.question(seconds(3), "handedness", "{}");
-  lab.session.practise(seconds(3), {1, 1, Chosen{2}, true});
+  lab.session.practise(seconds(3), {1, 1, ChoiceAnswer{2}, true});
   lab.session.pause(seconds(4), "telephone");
   FickleSink sink;
   session::Session again(order_of(3), {}, record::SessionRecorder(1, SecretKey{}, sink));

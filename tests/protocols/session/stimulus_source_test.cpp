@@ -44,15 +44,15 @@ TEST_CASE("practice presents the fields that the pack has for it, at their own g
     const engine::MappedField field = study.pack().map(code);
     const engine::RenderingModel expected(
         field.view(), key.study.rendering,
-        engine::scaled_db(study.pack().entry(code).gains, key.study.trials.own_gain_db()));
+        engine::scaled_db(study.pack().entry(code).gains, key.study.trials.centre_gain_db()));
     CHECK(stroked(source.plane_of(plane, key)) == stroked(expected));
-    CHECK_FALSE(stroked(source.plane_of(plane, key)) == stroked(source.flat()));
+    CHECK_FALSE(stroked(source.plane_of(plane, key)) == stroked(source.blank_plane()));
   }
   study::Plane one{.field = key.practice[0].stimulus};
   study::Plane other{.field = key.practice[1].stimulus};
   CHECK_FALSE(stroked(source.plane_of(one, key)) == stroked(source.plane_of(other, key)));
   one.blank = true;
-  CHECK(stroked(source.plane_of(one, key)) == stroked(source.flat()));
+  CHECK(stroked(source.plane_of(one, key)) == stroked(source.blank_plane()));
 }
 
 TEST_CASE("practice changes neither the study's codes nor its planes") {

@@ -90,7 +90,7 @@ engine::Pack write_pack(const std::filesystem::path& folder, const study::StudyK
   for (const engine::TextureField& field : fields) views.push_back(field.view());
   const std::span<const engine::FieldView> every(views);
   std::vector<engine::Gains> gains =
-      engine::choose_gains(every.first(key.stimuli.size()), key.study.rendering).of_field;
+      engine::choose_gains(every.first(key.stimuli.size()), key.study.rendering).per_field;
   std::ranges::copy(
       study::practice_gains(every.subspan(key.stimuli.size()), gains, key.study.rendering),
       std::back_inserter(gains));

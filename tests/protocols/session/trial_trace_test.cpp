@@ -22,7 +22,7 @@ TEST_CASE("measures of a steady stroke are those of its one force") {
   CHECK(found.measures.path_mm == Approx(599.9));
   CHECK(found.measures.force_rms_n == Approx(0.5));
   CHECK(found.measures.saturated_share == 0.0);
-  CHECK(found.valid());
+  CHECK(found.is_valid());
 }
 
 TEST_CASE("time and path without contact do not count") {
@@ -37,14 +37,14 @@ TEST_CASE("time and path without contact do not count") {
 TEST_CASE("a trial without contact measures nothing and is invalid") {
   const session::TrialFindings found = session::findings_of(stroke(10.0, {}), kLimitN);
   CHECK(found.measures == record::TrialMeasures{.within_limits = false});
-  CHECK_FALSE(found.valid());
-  CHECK_FALSE(session::findings_of({}, kLimitN).valid());
+  CHECK_FALSE(found.is_valid());
+  CHECK_FALSE(session::findings_of({}, kLimitN).is_valid());
 }
 
 TEST_CASE("each clause of the validity rule that depends on forces can fail alone, and is sealed") {
   const auto fails_within = [](const record::Trace& trace) {
     const session::TrialFindings found = session::findings_of(trace, kLimitN);
-    return found.long_enough && !found.measures.within_limits && !found.valid();
+    return found.long_enough && !found.measures.within_limits && !found.is_valid();
   };
   CHECK(fails_within(stroke(6.0, {0.0, 0.0, 0.19})));
   CHECK(fails_within(stroke(6.0, {0.0, 0.0, 2.01})));
@@ -116,7 +116,7 @@ TEST_CASE("the validity rule uses the median force and ignores extremes") {
     if (i % 5 == 0) trace.samples[i].force_n.z = 0.01;
     if (i % 5 == 1) trace.samples[i].force_n.z = 2.5;
   }
-  CHECK(session::findings_of(trace, kLimitN).valid());
+  CHECK(session::findings_of(trace, kLimitN).is_valid());
 }
 
 }  // namespace

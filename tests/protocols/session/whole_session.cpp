@@ -114,7 +114,7 @@ record::InterruptionDetail WholeSession::check(const std::vector<int>& named, in
   check_codes(unlucky);
 
   record::InterruptionDetail detail = record::from_json<record::InterruptionDetail>(
-      analysis::whole_event(interrupted[0], participant_key).secret);
+      analysis::open_event(interrupted[0], participant_key).secret);
   CHECK(detail.device_fault == "link_lost");
   return detail;
 }

@@ -27,13 +27,13 @@ TEST_CASE("a subject without changes is in the same condition in every trial") {
   const simulation::SubjectModel subject;
   simulation::Condition condition(subject, 1, 1, 3, 25);
   for (int nth = 1; nth <= 30; ++nth) {
-    const simulation::Moment moment = condition.before(nth, nth % 3);
+    const simulation::ConditionEffects moment = condition.effects_on(nth, nth % 3);
     CHECK(moment.noise_factor == 1.0);
     CHECK(moment.lapse_log_odds == 0.0);
-    CHECK_FALSE(moment.to_answer.has_value());
-    CHECK_FALSE(moment.to_stimulus.has_value());
+    CHECK_FALSE(moment.answer_leaning.has_value());
+    CHECK_FALSE(moment.stimulus_leaning.has_value());
     CHECK(moment.thought == nullptr);
-    condition.after(1, 2);
+    condition.record_trial(1, 2);
     if (nth % 7 == 0) condition.rest(nth);
   }
 }
@@ -41,9 +41,9 @@ TEST_CASE("a subject without changes is in the same condition in every trial") {
 TEST_CASE("noise begins higher by the factor and falls exponentially with presentations felt") {
   simulation::SubjectModel subject{.learning = {.factor = 1.8, .trials = 20.0}};
   simulation::Condition condition(subject, 1, 1);
-  CHECK(condition.before(1, 0).noise_factor == Approx(1.8));
+  CHECK(condition.effects_on(1, 0).noise_factor == Approx(1.8));
   for (const int nth : {2, 11, 21, 61}) {
-    CHECK(condition.before(nth, 0).noise_factor ==
+    CHECK(condition.effects_on(nth, 0).noise_factor ==
           Approx(std::pow(1.8, std::exp(-(nth - 1) / 20.0))));
   }
 }
@@ -51,7 +51,7 @@ TEST_CASE("noise begins higher by the factor and falls exponentially with presen
 TEST_CASE("of what was learnt at earlier visits a share is forgotten at each visit's end") {
   simulation::SubjectModel subject{.learning = {.factor = 2.0, .trials = 40.0, .forgotten = 0.4}};
   const auto first_of = [&](int visit) {
-    return simulation::Condition(subject, 1, 1, visit, 30).before(1, 0).noise_factor;
+    return simulation::Condition(subject, 1, 1, visit, 30).effects_on(1, 0).noise_factor;
   };
   CHECK(first_of(1) == Approx(2.0));
   CHECK(first_of(2) == Approx(std::pow(2.0, std::exp(-18.0 / 40.0))));
@@ -63,7 +63,7 @@ TEST_CASE("of what was learnt at earlier visits a share is forgotten at each vis
 TEST_CASE("people learn differently much, and on average what the population's spread says") {
   simulation::SubjectModel subject{.learning = {.factor = 1.5, .trials = 25.0, .spread = 0.4}};
   const auto log_noise = [&](int number, int nth) {
-    return std::log(simulation::Condition(subject, 9, number).before(nth, 0).noise_factor);
+    return std::log(simulation::Condition(subject, 9, number).effects_on(nth, 0).noise_factor);
   };
   check_normal_numbers([&](int i) { return std::log(log_noise(i, 1)); }, std::log(std::log(1.5)),
                        0.4);
@@ -84,7 +84,7 @@ TEST_CASE("fatigue grows with the minutes of exploring, and a break takes its sh
   // The slow reference counts every presentation.
   double minutes = 0.0;
   for (int nth = 1; nth <= 40; ++nth) {
-    const simulation::Moment moment = condition.before(nth, 0);
+    const simulation::ConditionEffects moment = condition.effects_on(nth, 0);
     CHECK(moment.noise_factor == Approx(std::exp(0.05 * minutes)));
     CHECK(moment.lapse_log_odds == Approx(0.2 * minutes).margin(1e-12));
     minutes += 0.2;
@@ -100,19 +100,19 @@ TEST_CASE("presentations that were not answered tire as well") {
   simulation::Condition every(subject, 1, 1);
   simulation::Condition some(subject, 1, 1);
   for (int nth = 1; nth <= 10; ++nth) {
-    static_cast<void>(every.before(nth, 0));
-    if (nth % 3 == 0) static_cast<void>(some.before(nth, 0));
+    static_cast<void>(every.effects_on(nth, 0));
+    if (nth % 3 == 0) static_cast<void>(some.effects_on(nth, 0));
   }
   every.rest(10);
   some.rest(10);
-  CHECK(every.before(11, 0).noise_factor == some.before(11, 0).noise_factor);
+  CHECK(every.effects_on(11, 0).noise_factor == some.effects_on(11, 0).noise_factor);
 }
 
 TEST_CASE("each block and each visit of a person has noise of its own") {
   simulation::SubjectModel subject{.period_noise_spread = 0.3};
   const auto log_noise = [&](int number, int visit, int block, int nth) {
     return std::log(
-        simulation::Condition(subject, 9, number, visit).before(nth, block).noise_factor);
+        simulation::Condition(subject, 9, number, visit).effects_on(nth, block).noise_factor);
   };
   check_normal_numbers([&](int i) { return log_noise(i, 1, 0, 1); }, 0.0, 0.3);
   // Independent between blocks and between visits: variances add.
@@ -123,28 +123,28 @@ TEST_CASE("each block and each visit of a person has noise of its own") {
                        both);
   CHECK(log_noise(4, 1, 1, 1) == log_noise(4, 1, 1, 17));
   simulation::Condition condition(subject, 9, 4);
-  const double first = condition.before(1, 0).noise_factor;
-  CHECK(condition.before(2, 1).noise_factor != first);
-  CHECK(condition.before(3, 0).noise_factor == first);
+  const double first = condition.effects_on(1, 0).noise_factor;
+  CHECK(condition.effects_on(2, 1).noise_factor != first);
+  CHECK(condition.effects_on(3, 0).noise_factor == first);
 }
 
 TEST_CASE("the trial before leaves its leanings, and a plane without texture none") {
   simulation::SubjectModel subject{.serial = {.answer = 0.5, .stimulus = -0.25}};
   simulation::Condition condition(subject, 1, 1);
-  CHECK_FALSE(condition.before(1, 0).to_answer.has_value());
-  condition.after(3, 1);
-  const simulation::Moment moment = condition.before(2, 0);
-  REQUIRE(moment.to_answer.has_value());
-  REQUIRE(moment.to_stimulus.has_value());
-  CHECK(moment.to_answer->position == 3);
-  CHECK(moment.to_answer->log_odds == 0.5);
-  CHECK(moment.to_stimulus->position == 1);
-  CHECK(moment.to_stimulus->log_odds == -0.25);
-  condition.after(2, std::nullopt);
-  CHECK_FALSE(condition.before(3, 0).to_stimulus.has_value());
-  CHECK(condition.before(3, 0).to_answer->position == 2);
+  CHECK_FALSE(condition.effects_on(1, 0).answer_leaning.has_value());
+  condition.record_trial(3, 1);
+  const simulation::ConditionEffects moment = condition.effects_on(2, 0);
+  REQUIRE(moment.answer_leaning.has_value());
+  REQUIRE(moment.stimulus_leaning.has_value());
+  CHECK(moment.answer_leaning->position == 3);
+  CHECK(moment.answer_leaning->log_odds == 0.5);
+  CHECK(moment.stimulus_leaning->position == 1);
+  CHECK(moment.stimulus_leaning->log_odds == -0.25);
+  condition.record_trial(2, std::nullopt);
+  CHECK_FALSE(condition.effects_on(3, 0).stimulus_leaning.has_value());
+  CHECK(condition.effects_on(3, 0).answer_leaning->position == 2);
   condition.forget();
-  CHECK_FALSE(condition.before(4, 0).to_answer.has_value());
+  CHECK_FALSE(condition.effects_on(4, 0).answer_leaning.has_value());
 }
 
 TEST_CASE("people differ in how they lean on the trial before") {
@@ -152,11 +152,11 @@ TEST_CASE("people differ in how they lean on the trial before") {
   subject.serial = {.answer = 0.2, .answer_spread = 0.3, .stimulus = -0.1, .stimulus_spread = 0.15};
   const auto moment_of = [&](int number) {
     simulation::Condition condition(subject, 5, number);
-    condition.after(0, 1);
-    return condition.before(2, 0);
+    condition.record_trial(0, 1);
+    return condition.effects_on(2, 0);
   };
-  check_normal_numbers([&](int i) { return moment_of(i).to_answer->log_odds; }, 0.2, 0.3);
-  check_normal_numbers([&](int i) { return moment_of(i).to_stimulus->log_odds; }, -0.1, 0.15);
+  check_normal_numbers([&](int i) { return moment_of(i).answer_leaning->log_odds; }, 0.2, 0.3);
+  check_normal_numbers([&](int i) { return moment_of(i).stimulus_leaning->log_odds; }, -0.1, 0.15);
 }
 
 TEST_CASE("one change does not shift the draws of another") {
@@ -169,7 +169,7 @@ TEST_CASE("one change does not shift the draws of another") {
   simulation::SubjectModel other = all;
   other.period_noise_spread = 0.0;
   const auto log_of = [](const simulation::SubjectModel& subject) {
-    return std::log(simulation::Condition(subject, 2, 7).before(3, 1).noise_factor);
+    return std::log(simulation::Condition(subject, 2, 7).effects_on(3, 1).noise_factor);
   };
   CHECK(log_of(all) == Approx(log_of(one) + log_of(other)));
 }

@@ -72,8 +72,8 @@ TEST_CASE("answers to trials that are felt without a session equal those of sess
     const study::Schedule schedule =
         study::make_schedule(design, study.key().draw_of(number, study::Draws::rehearsal));
     const simulation::Individual individual(subject, kSeed, number);
-    const simulation::SeenPictures pictures =
-        simulation::see(labels_of(schedule, design), subject, individual, knowledge);
+    const simulation::MatchedPictures pictures =
+        simulation::match_pictures(labels_of(schedule, design), subject, individual, knowledge);
     const simulation::FeltDecision decision(individual, knowledge);
     std::uint64_t nth = 0;
     for (const study::Trial& shown : schedule.trials) {

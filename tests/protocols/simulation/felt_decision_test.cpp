@@ -49,9 +49,10 @@ void check_normal(const Spread& found, double mean, double sd) {
 }
 
 TEST_CASE("people of a population differ as its subject file says") {
-  check_normal(
-      spread_of([](const simulation::Individual& one) { return std::log(one.noise().own); }),
-      std::log(0.3), 0.2);
+  check_normal(spread_of([](const simulation::Individual& one) {
+                 return std::log(one.noise().independent);
+               }),
+               std::log(0.3), 0.2);
   check_normal(spread_of([](const simulation::Individual& one) {
                  return std::log(one.lapse() / (1.0 - one.lapse()));
                }),
@@ -73,7 +74,7 @@ TEST_CASE("without spreads everybody is as the subject file says, to the last di
   subject.class_bias_spread = 0.0;
   for (int i = 1; i <= 20; ++i) {
     const simulation::Individual one(subject, 3, i);
-    CHECK(one.noise().own == subject.feature_noise);
+    CHECK(one.noise().independent == subject.feature_noise);
     CHECK(one.lapse() == subject.lapse);
     CHECK(one.bias(kLabels) == std::vector<double>{0.5, 1.25, 0.0});
   }
@@ -96,10 +97,10 @@ TEST_CASE("one spread does not change the other differences between people") {
   less.class_bias_spread = 0.0;
   const simulation::Individual one(all, 3, 5);
   const simulation::Individual other(less, 3, 5);
-  CHECK(one.noise().own == other.noise().own);
+  CHECK(one.noise().independent == other.noise().independent);
   CHECK(one.lapse() != other.lapse());
-  CHECK(one.noise().own != simulation::Individual(all, 3, 6).noise().own);
-  CHECK(one.noise().own != simulation::Individual(all, 4, 5).noise().own);
+  CHECK(one.noise().independent != simulation::Individual(all, 3, 6).noise().independent);
+  CHECK(one.noise().independent != simulation::Individual(all, 4, 5).noise().independent);
 }
 
 TEST_CASE("a lapse of 0 or 1 is the same for everybody") {

@@ -60,8 +60,8 @@ TEST_CASE("a shared training is the one explorations of everybody, and nobody ha
   const simulation::FeltKnowledge one_by_one =
       simulation::learn_by_feeling(study.fields, study.subject, 3.3, 3, 1);
   CHECK(same_knowledge(*learnt, one_by_one));
-  CHECK(simulation::remembered(learnt, study.subject, 3, 1) == learnt);
-  CHECK(simulation::remembered(learnt, study.subject, 3, 2) == learnt);
+  CHECK(simulation::memory_of(learnt, study.subject, 3, 1) == learnt);
+  CHECK(simulation::memory_of(learnt, study.subject, 3, 2) == learnt);
 }
 
 TEST_CASE("with trainings of their own people remember different passes, alike on all stimuli") {
@@ -72,7 +72,7 @@ TEST_CASE("with trainings of their own people remember different passes, alike o
   std::set<std::set<std::size_t>> all;
   std::vector<int> times(16, 0);
   for (int number = 1; number <= 40; ++number) {
-    const auto own = simulation::remembered(bank, study.subject, 3, number);
+    const auto own = simulation::memory_of(bank, study.subject, 3, number);
     CHECK(own->label_of_prototype == bank->label_of_prototype);
     const std::set<std::size_t> passes = passes_of(*own, *bank, 0);
     REQUIRE(passes.size() == 4);
@@ -86,8 +86,8 @@ TEST_CASE("with trainings of their own people remember different passes, alike o
   // Each of 16 passes by a quarter of 40 people: 10, standard deviation 2.7.
   CHECK(*std::ranges::min_element(times) > 0);
   CHECK(*std::ranges::max_element(times) < 22);
-  CHECK(same_knowledge(*simulation::remembered(bank, study.subject, 3, 5),
-                       *simulation::remembered(bank, study.subject, 3, 5)));
+  CHECK(same_knowledge(*simulation::memory_of(bank, study.subject, 3, 5),
+                       *simulation::memory_of(bank, study.subject, 3, 5)));
 }
 
 TEST_CASE("the shared training's explorations are among those that people draw from") {
@@ -105,7 +105,7 @@ TEST_CASE("memory shifts each prototype of each person once, by the noise of the
   double squares = 0.0;
   int count = 0;
   for (int number = 1; number <= 20; ++number) {
-    const auto own = simulation::remembered(learnt, study.subject, 3, number);
+    const auto own = simulation::memory_of(learnt, study.subject, 3, number);
     for (std::size_t i = 0; i < own->examples.size(); i += 4) {
       for (std::size_t f = 0; f < engine::kFeltFeatures; ++f) {
         const double error = own->examples[i].features[f] - learnt->examples[i].features[f];

@@ -44,8 +44,8 @@ Cells answers_of(const simulation::SubjectModel& subject, int trials) {
   const simulation::Individual individual(subject, 4, 1);
   const simulation::FeltDecision decision(individual, known);
   // The pictures lie the other way round than the classes.
-  const simulation::SeenPictures pictures =
-      simulation::see({"smooth", "rough"}, subject, individual, known);
+  const simulation::MatchedPictures pictures =
+      simulation::match_pictures({"smooth", "rough"}, subject, individual, known);
   simulation::Condition condition(subject, 4, 1);
   RandomStream order(4, "serial_dependence_test");
   Cells cells{};
@@ -59,7 +59,8 @@ Cells answers_of(const simulation::SubjectModel& subject, int trials) {
     std::copy(features.begin(), features.end(), felt.begin());
     RandomStream random = simulation::stream_of_trial(4, simulation::kAnswerPurpose, 1,
                                                       static_cast<std::uint64_t>(nth));
-    const int position = decision.answer(felt, pictures, random, condition.before(nth, 0)).position;
+    const int position =
+        decision.answer(felt, pictures, random, condition.effects_on(nth, 0)).position;
     simulation::end_trial(condition, {0, true, label}, position, pictures, known);
     const int said = position == 1 ? 0 : 1;
     if (nth > 1) {
@@ -120,12 +121,13 @@ TEST_CASE("without serial dependence the trial before tells nothing of an answer
 }
 
 /// The share of right answers to a rough texture in one condition.
-double share_right(const simulation::SubjectModel& subject, const simulation::Moment& moment) {
+double share_right(const simulation::SubjectModel& subject,
+                   const simulation::ConditionEffects& moment) {
   const simulation::FeltKnowledge known = two_classes();
   const simulation::Individual individual(subject, 4, 1);
   const simulation::FeltDecision decision(individual, known);
-  const simulation::SeenPictures pictures =
-      simulation::see({"rough", "smooth"}, subject, individual, known);
+  const simulation::MatchedPictures pictures =
+      simulation::match_pictures({"rough", "smooth"}, subject, individual, known);
   engine::FeltFeatures felt{};
   std::copy_n(known.examples[0].features.begin(), felt.size(), felt.begin());
   constexpr int kTrials = 20'000;

@@ -72,14 +72,14 @@ TEST_CASE("difficulty changes how long people think and not what they answer") {
   simulation::SubjectModel subject{.feature_noise = 0.6};
   const simulation::Individual individual(subject, 1, 1);
   const simulation::FeltDecision decision(individual, known);
-  const simulation::SeenPictures pictures =
-      simulation::see({"bark", "straw"}, subject, individual, known);
+  const simulation::MatchedPictures pictures =
+      simulation::match_pictures({"bark", "straw"}, subject, individual, known);
   const simulation::ThoughtTime thought;
   const auto answer_to = [&](double felt, std::uint64_t nth, bool is_flat) {
     engine::FeltFeatures features;
     features.fill(felt);
     RandomStream random = simulation::stream_of_trial(3, simulation::kAnswerPurpose, 1, nth);
-    simulation::Moment moment;
+    simulation::ConditionEffects moment;
     if (!is_flat) moment.thought = &thought;
     return decision.answer(features, pictures, random, moment);
   };

@@ -97,7 +97,7 @@ class StrengthObserver {
       const double shared = person_.noise().common * random_.normal();
       double strength = 0.0;
       for (int i = 0; i < engine::kFeltFeatures; ++i) {
-        const double feature = now[i] + shared + person_.noise().own * random_.normal();
+        const double feature = now[i] + shared + person_.noise().independent * random_.normal();
         strength += (high[i] - low[i]) * feature;
       }
       if (interval == 0 || strength > most) {
@@ -205,7 +205,7 @@ double displacement_m_per_n(const simulation::SubjectModel& subject, double freq
     RandomStream random(1, "tracks: displacement");
     device::SimulatedHand hand =
         simulation::make_exploring_hand(stroking(subject, frequency_hz), kPlane, random);
-    hand.feel_by(tips[vibrates ? 1 : 0]);
+    hand.set_sense(tips[vibrates ? 1 : 0]);
     VibratingWall wall({frequency_hz, vibrates ? force_n : 0.0});
     NoSink sink;
     static_cast<void>(device::run_servo_in_virtual_time(hand, wall, sink, {}));

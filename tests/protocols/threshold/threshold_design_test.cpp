@@ -65,7 +65,7 @@ std::vector<study::Trial> presented(const study::Study& study, const study::Sche
   for (const study::Trial& scheduled : order->schedule().trials) {
     const study::Trial& shown = all.emplace_back(order->at(scheduled));
     const int right = shown.right.value();
-    order->answered(shown, Chosen{is_right(shown) ? right : (right == 0 ? 1 : 0)});
+    order->answered(shown, ChoiceAnswer{is_right(shown) ? right : (right == 0 ? 1 : 0)});
   }
   return all;
 }
@@ -415,7 +415,7 @@ TEST_CASE(
       CHECK(again.level == shown.level);
       ++interrupted;
     }
-    order->answered(shown, Chosen{0});
+    order->answered(shown, ChoiceAnswer{0});
   }
   CHECK(interrupted == 12);
 }
@@ -465,7 +465,7 @@ TEST_CASE("the studies of thresholds that ship can be read, and say what they pr
     CHECK(study.trials.break_after_min == 8.0);
     CHECK(study::threshold::options_of(study).control_trials > 0);
     CHECK(study::threshold::options_of(study).practice_trials > 0);
-    CHECK(json::parse(study.task->in_clear()).size() == 19);
+    CHECK(json::parse(study.task->plaintext_settings()).size() == 19);
     CHECK(study.task->advice(study).empty());
   }
 }

@@ -164,7 +164,7 @@ TEST_CASE("datasets of a threshold study keep to BIDS and Psych-DS, and tell int
   int trials = 0;
   study.store().for_each(record::EventKind::trace_stored, [&](const record::Event& stored) {
     const record::TraceBody body = record::from_json<record::TraceBody>(
-        analysis::whole_event(stored, keys.participant.value()).event.body);
+        analysis::open_event(stored, keys.participant.value()).event.body);
     REQUIRE(body.explorations.size() == 2);
     REQUIRE(body.began_ns.size() == 2);
     CHECK(body.began_ns[0] == 0);

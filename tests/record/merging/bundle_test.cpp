@@ -24,7 +24,7 @@ class TableInMemory final : public BundleTable {
     Bytes session;
   };
 
-  [[nodiscard]] const std::string& shown() const override { return name_; }
+  [[nodiscard]] const std::string& address() const override { return name_; }
   [[nodiscard]] std::vector<BundleRow> rows() override {
     std::vector<BundleRow> rows;
     for (const Row& one : kept) rows.push_back(one.row);
@@ -34,7 +34,7 @@ class TableInMemory final : public BundleTable {
     if (fails_after == 0) throw StoreError("the server was killed");
     --fails_after;
     for (const Row& one : kept) {
-      if (one.row.is_part(row) && one.row.keys == row.keys) return;
+      if (one.row.is_same_part(row) && one.row.keys == row.keys) return;
     }
     put(row, {chain.begin(), chain.end()}, {session.begin(), session.end()});
   }
@@ -154,7 +154,7 @@ TEST_CASE("rows that are there twice, or were sent before a withdrawal, do no ha
   CHECK((lab.fetched() == lab.merged({lab.a})));
   // The owner destroys the keys.
   std::erase_if(lab.table->kept, [&](const TableInMemory::Row& one) {
-    return one.row.is_part(before.front().row) && one.row.keys == 2;
+    return one.row.is_same_part(before.front().row) && one.row.keys == 2;
   });
   CHECK((lab.fetched() == lab.merged({lab.a})));
   CHECK(lab.send(lab.a).rows_with_erased_keys.empty());
@@ -225,21 +225,21 @@ TEST_CASE("garbage, bombs and altered bytes in a row are refused by its number, 
   CHECK_THAT(refusal_after([](auto& row) { row.row.end += 1; }), holds_text("2"));
   CHECK_THAT(refusal_after([](auto& row) { row.row.first = -1; }), holds_text("lab_a"));
   CHECK_THAT(refusal_after([](auto& row) {
-               BundleHalf session = unpacked(row.session, 2);
+               BundleHalf session = unpack_bundle(row.session, 2);
                session.events.at(3).body += " ";
-               row.session = packed(session);
+               row.session = pack_bundle(session);
              }),
              holds_text("2") && holds_text("3"));
   CHECK_THAT(refusal_after([](auto& row) {
-               BundleHalf session = unpacked(row.session, 2);
+               BundleHalf session = unpack_bundle(row.session, 2);
                session.traces.back().second.back() ^= 1;
-               row.session = packed(session);
+               row.session = pack_bundle(session);
              }),
              holds_text("2") && holds_text("3"));
   CHECK_THAT(refusal_after([](auto& row) {
-               BundleHalf session = unpacked(row.session, 2);
+               BundleHalf session = unpack_bundle(row.session, 2);
                session.keys.safety.reset();
-               row.session = packed(session);
+               row.session = pack_bundle(session);
              }),
              holds_text("session 2"));
 }
@@ -253,7 +253,7 @@ TEST_CASE("bytes that were cut off or flipped anywhere are unpacked or refused, 
     Bytes bytes = packed;
     if (i % 3 == 0) bytes.resize(random.below(bytes.size()));
     if (!bytes.empty()) bytes[random.below(bytes.size())] ^= 1U << (i % 8);
-    CHECK_NOTHROW(refusal_of([&] { static_cast<void>(unpacked(bytes, 1)); }));
+    CHECK_NOTHROW(refusal_of([&] { static_cast<void>(unpack_bundle(bytes, 1)); }));
   }
-  CHECK(unpacked(packed, 1).traces.size() == 3);
+  CHECK(unpack_bundle(packed, 1).traces.size() == 3);
 }

@@ -155,11 +155,11 @@ TEST_CASE("a failing disk leaves no collected file, or a whole one") {
       FaultVfs vfs;
       Stations stations = stations_in({lab.a, lab.b});
       const fs::path target = lab.file("C.db");
-      vfs.plan({.kind = kind, .at = at, .lasts = true});
+      vfs.plan({.kind = kind, .at = at, .is_persistent = true});
       const std::string line = refusal_of([&] { collect_into_file(std::move(stations), target); });
-      const bool struck = vfs.struck();
+      const bool has_occurred = vfs.has_occurred();
       const bool ended = kind == Fault::Kind::kill || kind == Fault::Kind::torn_kill;
-      if (struck && ended) vfs.start_anew();
+      if (has_occurred && ended) vfs.restore_disk();
       vfs.repair();
       vfs.plan({});
       INFO("kind " << static_cast<int>(kind) << " at operation " << at << ": " << line);
@@ -170,7 +170,7 @@ TEST_CASE("a failing disk leaves no collected file, or a whole one") {
         ++refused;
       }
       fs::remove(target);
-      if (!struck) break;
+      if (!has_occurred) break;
     }
     CHECK(refused > 3);
   }
@@ -186,8 +186,8 @@ TEST_CASE("after a power cut the collected file is whole if it is there") {
   vfs.plan({.kind = Fault::Kind::power_cut, .at = 1});
   static_cast<void>(
       refusal_of([&] { writable(target).exclude(1, kUtc, "strikes the power cut"); }));
-  REQUIRE(vfs.struck());
-  vfs.start_anew();
+  REQUIRE(vfs.has_occurred());
+  vfs.restore_disk();
   const StudyStore store = StudyStore::open(target, Access::read_only);
   CHECK(store.sessions().size() == 4);
   CHECK_FALSE(store.first_fault());

@@ -11,11 +11,11 @@ using namespace touchtrial::stimuli;
 
 namespace {
 
-bool share_a_pixel(CropPlace a, CropPlace b, int side_px) {
+bool share_a_pixel(CropPosition a, CropPosition b, int side_px) {
   return std::abs(a.x - b.x) < side_px && std::abs(a.y - b.y) < side_px;
 }
 
-bool lies_within(CropPlace place, PhotoSize photo, int side_px) {
+bool lies_within(CropPosition place, PhotoSize photo, int side_px) {
   return place.x >= 0 && place.y >= 0 && place.x + side_px <= photo.width_px &&
          place.y + side_px <= photo.height_px;
 }
@@ -27,7 +27,7 @@ TEST_CASE("crops do not share a pixel while there is room, and never lie outside
   REQUIRE(separate_crops(photo, 20) == 15);
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     RandomStream random(seed, "crop plan test");
-    const auto places = crop_places(photo, 20, 15, random);
+    const auto places = crop_positions(photo, 20, 15, random);
     REQUIRE(places.size() == 15);
     for (std::size_t i = 0; i < places.size(); ++i) {
       CHECK(lies_within(places[i], photo, 20));
@@ -43,7 +43,7 @@ TEST_CASE("crops that must overlap share at most half their side and are all dif
     REQUIRE(most > separate_crops(photo, side_px));
     for (int count = separate_crops(photo, side_px) + 1; count <= most; ++count) {
       RandomStream random(3, "crop plan test");
-      const auto places = crop_places(photo, side_px, count, random);
+      const auto places = crop_positions(photo, side_px, count, random);
       REQUIRE(static_cast<int>(places.size()) == count);
       for (std::size_t i = 0; i < places.size(); ++i) {
         CHECK(lies_within(places[i], photo, side_px));
@@ -57,7 +57,7 @@ TEST_CASE("crops that must overlap share at most half their side and are all dif
 
 TEST_CASE("a photograph as large as a crop gives one crop, a smaller one none") {
   RandomStream random(1, "crop plan test");
-  CHECK(crop_places({20, 20}, 20, 1, random) == std::vector<CropPlace>{{0, 0}});
+  CHECK(crop_positions({20, 20}, 20, 1, random) == std::vector<CropPosition>{{0, 0}});
   CHECK(overlapping_crops({20, 20}, 20) == 1);
   CHECK(overlapping_crops({20, 19}, 20) == 0);
   CHECK(separate_crops({19, 200}, 20) == 0);
@@ -66,7 +66,7 @@ TEST_CASE("a photograph as large as a crop gives one crop, a smaller one none") 
 TEST_CASE("a seed decides where crops are cut") {
   const auto places = [](std::uint64_t seed) {
     RandomStream random(seed, "crop plan test");
-    return crop_places({200, 200}, 20, 4, random);
+    return crop_positions({200, 200}, 20, 4, random);
   };
   CHECK(places(1) == places(1));
   CHECK(places(1) != places(2));
@@ -74,11 +74,11 @@ TEST_CASE("a seed decides where crops are cut") {
 
 TEST_CASE("photographs share the crops evenly, and separate crops come first") {
   const std::vector<PhotoSize> photos = {{20, 20}, {40, 40}, {30, 60}};
-  CHECK(crop_shares(photos, 20, 3) == std::vector<int>{1, 1, 1});
-  CHECK(crop_shares(photos, 20, 5) == std::vector<int>{1, 2, 2});
-  CHECK(crop_shares(photos, 20, 8) == std::vector<int>{1, 4, 3});
-  CHECK(crop_shares(photos, 20, 9) == std::vector<int>{1, 5, 3});
-  CHECK(crop_shares(photos, 20, 21).empty());
+  CHECK(distribute_crops(photos, 20, 3) == std::vector<int>{1, 1, 1});
+  CHECK(distribute_crops(photos, 20, 5) == std::vector<int>{1, 2, 2});
+  CHECK(distribute_crops(photos, 20, 8) == std::vector<int>{1, 4, 3});
+  CHECK(distribute_crops(photos, 20, 9) == std::vector<int>{1, 5, 3});
+  CHECK(distribute_crops(photos, 20, 21).empty());
 }
 
 TEST_CASE(
@@ -97,7 +97,7 @@ TEST_CASE(
       for (int left = 0; left < opacity.width(); ++left) {
         for (int height = 1; top + height <= opacity.height(); ++height) {
           for (int width = 1; left + width <= opacity.width(); ++width) {
-            const GreyImage part = cut(opacity, {left, top, {height, width}});
+            const GreyImage part = crop_image(opacity, {left, top, {height, width}});
             if (std::ranges::count(part.samples(), 0) == 0) {
               most = std::max(most, value({height, width}));
             }
@@ -107,6 +107,6 @@ TEST_CASE(
     }
     const PhotoPart found = opaque_part(opacity, min_px);
     CHECK(value(found.size_px) == most);
-    CHECK(std::ranges::count(cut(opacity, found).samples(), 0) == 0);
+    CHECK(std::ranges::count(crop_image(opacity, found).samples(), 0) == 0);
   }
 }

@@ -403,12 +403,12 @@ TEST_CASE("nothing is replaced unasked, and never a folder that no import wrote"
   options.replace = true;
   options.crops = 2;
   CHECK_NOTHROW(import_photographs(options));
-  CHECK_FALSE(is_there(album.folder.path() / "study.pictures/D9-3.png"));
+  CHECK_FALSE(path_exists(album.folder.path() / "study.pictures/D9-3.png"));
   options.pictures = album.folder.path() / "precious";
   fs::create_directory(options.pictures);
   replace_file(options.pictures / "notes.txt", "mine");
   CHECK_THAT(album.refusal(options), holds_text("precious"));
-  CHECK(is_there(options.pictures / "notes.txt"));
+  CHECK(path_exists(options.pictures / "notes.txt"));
 }
 
 TEST_CASE("a failed replacement leaves the earlier import as it was") {
@@ -420,7 +420,7 @@ TEST_CASE("a failed replacement leaves the earlier import as it was") {
   options.replace = true;
   CHECK_THAT(album.refusal(options), names("E.png"));
   CHECK(text_of(read_file(options.study)) == before);
-  CHECK(is_there(album.folder.path() / "study.pictures/D9-3.png"));
+  CHECK(path_exists(album.folder.path() / "study.pictures/D9-3.png"));
 }
 
 TEST_CASE("outputs among the photographs, or at impossible paths, are refused") {

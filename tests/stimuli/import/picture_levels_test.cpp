@@ -53,7 +53,7 @@ TEST_CASE("equalising gives every picture the same mean and rms, and clips next 
     CHECK(wanted.mean_grey.has_value() == (which != LevelEqualising::rms));
     CHECK(wanted.rms_grey.has_value() == (which != LevelEqualising::mean));
     for (std::size_t i = 0; i < pictures.size(); ++i) {
-      const EqualisedPicture result = equalised(pictures[i], set[i], wanted);
+      const EqualisedPicture result = equalise_picture(pictures[i], set[i], wanted);
       const PictureLevels after = levels_of(result.picture);
       CHECK(after.mean_grey == Approx(wanted.mean_grey.value_or(set[i].mean_grey)).margin(0.5));
       CHECK(after.rms_grey == Approx(wanted.rms_grey.value_or(set[i].rms_grey)).margin(0.5));
@@ -75,7 +75,7 @@ TEST_CASE("equal contrast is reduced where a picture has no room for more") {
 TEST_CASE("samples that shifting the mean clips are counted") {
   const GreyImage picture = wave(64, 16, 10, 10);
   const EqualisedPicture result =
-      equalised(picture, levels_of(picture), {.mean_grey = 250.0, .rms_grey = {}});
+      equalise_picture(picture, levels_of(picture), {.mean_grey = 250.0, .rms_grey = {}});
   CHECK(result.clipped_share > 0.2);
   CHECK(result.clipped_share < 0.5);
 }

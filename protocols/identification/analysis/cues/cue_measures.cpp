@@ -7,7 +7,6 @@
 #include <utility>
 
 namespace touchtrial::analysis::identification {
-
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -25,8 +24,8 @@ MeasureList<MeanEstimate> attained_measures() {
           interval_of<Row>("interval", "95% (%)", share_range, &Row::known_interval)};
 }
 
-std::string_view title_of_observer(const ObserverFigures& one) {
-  return title_of(one.cue);
+std::string_view title_of_observer(const ObserverFigures& observer) {
+  return title_of(observer.cue);
 }
 
 Json participants_json(const MethodCues& cues) {
@@ -36,7 +35,8 @@ Json participants_json(const MethodCues& cues) {
   Json all = Json::array();
   for (const auto& [name, i] : places) {
     Json available;
-    for (const ObserverFigures& one : cues.observers) available[name_of(one.cue)] = one.accuracy[i];
+    for (const ObserverFigures& observer : cues.observers)
+      available[name_of(observer.cue)] = observer.accuracy[i];
     all.push_back({{"participant", name},
                    {"n", cues.participant_trials[i]},
                    {"accuracy", cues.human_accuracy[i]},
@@ -47,8 +47,8 @@ Json participants_json(const MethodCues& cues) {
 
 MeasureList<CueMatch> match_measures() {
   using Row = CueMatch;
-  return {member_of<Row>("best", [](const Row& one) { return name_of(one.best); }),
-          member_of<Row>("second", [](const Row& one) { return name_of(one.second); }),
+  return {member_of<Row>("best", [](const Row& row) { return name_of(row.best); }),
+          member_of<Row>("second", [](const Row& row) { return name_of(row.second); }),
           object_in<Row>("difference_bits", &Row::difference, figure_measures("", 3)),
           member_of<Row>("told_apart", &Row::is_distinct)};
 }
@@ -57,24 +57,26 @@ Json method_json(const MethodCues& cues) {
   Json human = object_of(cues.human_mean, attained_measures());
   human["confusion"] = cues.human_confusion;
   human["no_response"] = cues.no_response;
-  return {{"method", cues.method},
-          {"trials", cues.trials},
-          {"without_trace", cues.without_trace},
-          {"unjudged", cues.unjudged},
-          {"human", std::move(human)},
-          {"observers",
-           objects_of(cues.observers,
-                      joined_measures<ObserverFigures>(
-                          {{member_of<ObserverFigures>(
-                                "cue", [](const ObserverFigures& one) { return name_of(one.cue); }),
-                            member_of<ObserverFigures>("title", title_of_observer)},
-                           efficiency_measures(),
-                           divergence_measures()}))},
-          {"match", cues.match ? object_of(*cues.match, match_measures()) : Json(nullptr)},
-          {"per_participant", participants_json(cues)}};
+  return {
+      {"method", cues.method},
+      {"trials", cues.trials},
+      {"without_trace", cues.without_trace},
+      {"unjudged", cues.unjudged},
+      {"human", std::move(human)},
+      {"observers",
+       objects_of(
+           cues.observers,
+           joined_measures<ObserverFigures>(
+               {{member_of<ObserverFigures>(
+                     "cue", [](const ObserverFigures& observer) { return name_of(observer.cue); }),
+                 member_of<ObserverFigures>("title", title_of_observer)},
+                efficiency_measures(),
+                divergence_measures()}))},
+      {"match", cues.match ? object_of(*cues.match, match_measures()) : Json(nullptr)},
+      {"per_participant", participants_json(cues)}};
 }
 
-/// The method by which each kind of number is computed.
+/// The method of each kind of number.
 Json by_json() {
   return {
       {"available",
@@ -84,24 +86,23 @@ Json by_json() {
       {"efficiency",
        "mean accuracy over mean available accuracy; expanded percentiles of a cluster bootstrap "
        "over participants, 9,999 draws (Davison, Hinkley 1997; Hesterberg 2015)"},
-      {"efficiency_above_chance", "the same with chance taken from both"},
+      {"efficiency_above_chance", "the same after subtracting chance from both"},
       {"divergence_bits",
-       "Jensen-Shannon divergence (Lin 1991) of answers to a class, mean over classes, trials "
-       "without a response left out; estimate and interval of the jackknife over participants "
-       "(Miller 1974)"},
+       "Jensen-Shannon divergence (Lin 1991) of answers to a class, mean over classes, without "
+       "trials that have no response; jackknife estimate and interval over participants (Miller "
+       "1974)"},
       {"matched",
-       "the observer with the noise of each felt log intensity (by bisection) that makes it "
-       "right as often as the participants, if there is one"},
+       "the observer with noise on each felt log intensity (by bisection) that makes it as "
+       "accurate as the participants, if possible"},
       {"difference_bits",
-       "second least divergence of matched observers less the least; the same jackknife; "
-       "told_apart only from 6 participants on, and if the nearest observer can be as uncertain as "
-       "they"}};
+       "second smallest divergence of matched observers minus the smallest; the same jackknife; "
+       "told_apart only with at least 6 participants, and if the nearest observer can be as "
+       "uncertain as they"}};
 }
 
-/// A column that names the observer.
 Measure<ObserverFigures> observer_column() {
-  return column_of<ObserverFigures>("observer uses", [](const ObserverFigures& one) {
-    return std::string(title_of_observer(one));
+  return column_of<ObserverFigures>("observer uses", [](const ObserverFigures& observer) {
+    return std::string(title_of_observer(observer));
   });
 }
 
@@ -126,34 +127,34 @@ MeasureList<ObserverFigures> divergence_measures(const std::optional<CueMatch>& 
   using Row = ObserverFigures;
   MeasureList<Row> matched =
       measures_in<Row>(&Row::matched_divergence, figure_measures("divergence, matched (bit)", 3));
-  for (Measure<Row>& one : matched) one.member.clear();
-  matched.front().cell = [match](const Row& one) {
-    return Cell(plain_figure(one.matched_divergence.value, 3), match && match->best == one.cue);
+  for (Measure<Row>& measure : matched) measure.member.clear();
+  matched.front().cell = [match](const Row& row) {
+    return Cell(plain_figure(row.matched_divergence.value, 3), match && match->best == row.cue);
   };
   return joined_measures<Row>(
-      {{observer_column().with(
+      {{observer_column().with_note(
            "Divergence: Jensen-Shannon, between participants' and the observer's answers, mean "
-           "over "
-           "textures; 0 if confusions are the same, at most 1. Estimates and intervals: jackknife "
-           "over participants, which removes the bias of small counts.",
+           "over textures; 0 if confusions are the same, at most 1. Estimates and intervals: "
+           "jackknife over participants, which removes the bias of small counts.",
            {Source::lin, Source::miller_jackknife})},
        part_of<Row>("divergence_bits", &Row::divergence, figure_measures("divergence (bit)", 3)),
        {member_of<Row>("confusion", &Row::confusion),
         column_of<Row>("noise to match",
-                       [](const Row& one) {
-                         return plain_figure(one.matched_noise, 2) +
-                                (one.is_as_uncertain() ? "" : " *");
+                       [](const Row& row) {
+                         return plain_figure(row.matched_noise, 2) +
+                                (row.is_as_uncertain() ? "" : " *");
                        })
-            .with("Matched: an observer that makes almost no errors has no confusions to compare. "
-                  "It is given noise (on each felt log intensity) until it is as accurate as the "
-                  "participants; 0 if it is no more accurate without. The smallest divergence is "
-                  "emphasised."),
+            .with_note(
+                "Matched: an observer that makes almost no errors has no confusions to compare. It "
+                "is given noise (on each felt log intensity) until it is as accurate as the "
+                "participants; 0 if it is no more accurate without noise. The smallest divergence "
+                "is emphasised."),
         object_in<Row, Row>(
             "matched", std::identity(),
-            {number_member<Row>("noise", [](const Row& one) { return one.matched_noise; }),
+            {number_member<Row>("noise", [](const Row& row) { return row.matched_noise; }),
              object_in<Row>("divergence_bits", &Row::matched_divergence, figure_measures("", 3)),
              member_of<Row>("confusion", &Row::matched_confusion),
-             member_of<Row>("accuracy", [](const Row& one) { return one.matched_accuracy; }),
+             member_of<Row>("accuracy", [](const Row& row) { return row.matched_accuracy; }),
              member_of<Row>("as_uncertain_as_participants", &Row::is_as_uncertain)})},
        std::move(matched)});
 }

@@ -6,9 +6,9 @@
 
 namespace touchtrial::analysis::identification {
 
-/// The accuracy that an observer attains, and the participants' efficiency.
+/// An observer's accuracy, and participants' efficiency.
 [[nodiscard]] MeasureList<ObserverFigures> efficiency_measures();
-/// How much an observer's confusions differ from the participants'.
+/// Divergence of an observer's confusions from the participants'.
 /// \param match  its best observer is emphasised
 [[nodiscard]] MeasureList<ObserverFigures> divergence_measures(
     const std::optional<CueMatch>& match = {});

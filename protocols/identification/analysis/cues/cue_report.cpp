@@ -18,7 +18,6 @@
 #include <fmt/format.h>
 
 namespace touchtrial::analysis::identification {
-
 namespace {
 
 /// The counted trials of a study and their felt features.
@@ -29,7 +28,6 @@ struct FeltStudy {
   int jobs = 0;
 };
 
-/// The counted trials, in the order of the outcomes.
 std::vector<const TrialOutcome*> counted_trials(const Outcomes& outcomes) {
   std::vector<const TrialOutcome*> trials;
   for (const TrialOutcome& trial : outcomes.trials) {
@@ -38,15 +36,16 @@ std::vector<const TrialOutcome*> counted_trials(const Outcomes& outcomes) {
   return trials;
 }
 
-StudyPlane plane_to_feel(const record::StudyStore& store, const study::StudyKey& key,
-                         std::span<const TrialOutcome* const> trials, const CueOptions& options) {
+StudyPlane plane_for_features(const record::StudyStore& store, const study::StudyKey& key,
+                              std::span<const TrialOutcome* const> trials,
+                              const CueOptions& options) {
   if (auto plane = study_plane(key, pack_of(store, key, options.pack))) return *plane;
   return {touched_plane(store, key, trials, key.study.rendering.pitch_mm, options.jobs),
           kPlaneFromTraces};
 }
 
 /// The places of a method's trials that have a trace.
-std::vector<std::size_t> felt_with(const FeltStudy& study, int method, MethodCues& cues) {
+std::vector<std::size_t> places_with_trace(const FeltStudy& study, int method, MethodCues& cues) {
   std::vector<std::size_t> places;
   for (std::size_t place = 0; place < study.trials.size(); ++place) {
     if (study.trials[place]->stimulus.method != method) continue;
@@ -68,7 +67,7 @@ Answers all_answers(const FeltStudy& study, const std::vector<std::size_t>& plac
   for (const std::size_t place : places) {
     const TrialOutcome& trial = *study.trials[place];
     observed.push_back(
-        {trial.stimulus.class_index, trial.stimulus.exemplar, study.felt.felt[place]});
+        {trial.stimulus.class_index, trial.stimulus.exemplar, study.felt.features[place]});
     responses.push_back(trial.response);
   }
   Answers answers;
@@ -78,7 +77,7 @@ Answers all_answers(const FeltStudy& study, const std::vector<std::size_t>& plac
   return answers;
 }
 
-JudgedTrial judged(const TrialOutcome& trial, const Answers& answers, std::size_t i) {
+JudgedTrial judged_trial(const TrialOutcome& trial, const Answers& answers, std::size_t i) {
   JudgedTrial judged{trial.stimulus.class_index, trial.response, {}, {}};
   for (std::size_t observer = 0; observer < kCues.size(); ++observer) {
     judged.ideal[observer] = answers[observer].ideal[i];
@@ -87,22 +86,21 @@ JudgedTrial judged(const TrialOutcome& trial, const Answers& answers, std::size_
   return judged;
 }
 
-/// The answers by participant, in the order of participants' first trials, which is the order of
-/// sessions.
-std::vector<ParticipantAnswers> by_participant(const FeltStudy& study,
-                                               const std::vector<std::size_t>& places,
-                                               const Answers& answers, MethodCues& cues) {
+/// The answers of participants, in the order of their first trials, which is the order of sessions.
+std::vector<ParticipantAnswers> participant_answers(const FeltStudy& study,
+                                                    const std::vector<std::size_t>& places,
+                                                    const Answers& answers, MethodCues& cues) {
   std::vector<ParticipantAnswers> all;
-  std::map<std::string, std::size_t> known;
+  std::map<std::string, std::size_t> index_of;
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (answers.front().ideal[i].empty()) {
       ++cues.unjudged;
       continue;
     }
     const TrialOutcome& trial = *study.trials[places[i]];
-    const auto [at, is_new] = known.try_emplace(trial.participant, all.size());
+    const auto [entry, is_new] = index_of.try_emplace(trial.participant, all.size());
     if (is_new) all.emplace_back(trial.participant, study.classes);
-    all[at->second].add(judged(trial, answers, i));
+    all[entry->second].add(judged_trial(trial, answers, i));
   }
   return all;
 }
@@ -112,29 +110,29 @@ void add_counts(AnswerCounts& sum, const FlatCounts& counts) {
   for (std::size_t i = 0; i < counts.size(); ++i) sum[i / side][i % side] += counts[i];
 }
 
-AnswerCounts no_answers(int classes) {
+AnswerCounts zero_counts(int classes) {
   const auto side = static_cast<std::size_t>(classes);
   return AnswerCounts(side, std::vector<double>(side, 0.0));
 }
 
-void put_participants(MethodCues& cues, const std::vector<ParticipantAnswers>& all, int classes) {
-  cues.human_confusion = no_answers(classes);
+void set_participants(MethodCues& cues, const std::vector<ParticipantAnswers>& all, int classes) {
+  cues.human_confusion = zero_counts(classes);
   cues.no_response.assign(static_cast<std::size_t>(classes), 0);
-  for (const ParticipantAnswers& one : all) {
-    cues.trials += one.trials;
-    cues.participants.push_back(one.participant);
-    cues.participant_trials.push_back(one.trials);
-    cues.human_accuracy.push_back(one.human_accuracy());
-    add_counts(cues.human_confusion, one.human);
-    for (int i = 0; i < classes; ++i) cues.no_response[i] += one.no_response[i];
+  for (const ParticipantAnswers& participant : all) {
+    cues.trials += participant.trials;
+    cues.participants.push_back(participant.participant);
+    cues.participant_trials.push_back(participant.trials);
+    cues.human_accuracy.push_back(participant.human_accuracy());
+    add_counts(cues.human_confusion, participant.human);
+    for (int i = 0; i < classes; ++i) cues.no_response[i] += participant.no_response[i];
   }
   cues.human_mean = participant_mean(cues.human_accuracy);
 }
 
 int min_per_class(const std::vector<ParticipantAnswers>& all) {
   int fewest = all.front().trials;
-  for (const ParticipantAnswers& one : all) {
-    fewest = std::min(fewest, std::ranges::min(one.presented));
+  for (const ParticipantAnswers& participant : all) {
+    fewest = std::min(fewest, std::ranges::min(participant.presented));
   }
   return fewest;
 }
@@ -143,32 +141,28 @@ ObserverFigures observer_figures(std::size_t observer, const std::vector<Partici
                                  const CueStatistics& statistics) {
   ObserverFigures result;
   result.cue = kCues[observer];
-  result.confusion = no_answers(all.front().classes);
+  result.confusion = zero_counts(all.front().classes);
   result.matched_confusion = result.confusion;
-  for (const ParticipantAnswers& one : all) {
-    result.accuracy.push_back(one.available(observer));
-    add_counts(result.confusion, one.ideal[observer]);
-    add_counts(result.matched_confusion, one.matched[observer]);
+  for (const ParticipantAnswers& participant : all) {
+    result.accuracy.push_back(participant.observer_accuracy(observer));
+    add_counts(result.confusion, participant.ideal[observer]);
+    add_counts(result.matched_confusion, participant.matched[observer]);
   }
   result.mean = participant_mean(result.accuracy);
   result.efficiency = statistics.efficiency[observer];
-  result.corrected_efficiency = statistics.corrected[observer];
+  result.corrected_efficiency = statistics.corrected_efficiency[observer];
   result.divergence = statistics.divergence[observer];
   result.matched_divergence = statistics.matched_divergence[observer];
   return result;
 }
 
-const ObserverFigures& observer_of(const MethodCues& cues, Cue cue) {
-  return *std::ranges::find(cues.observers, cue, &ObserverFigures::cue);
-}
-
 MethodCues method_cues(const FeltStudy& study, int method, const std::string& label) {
   MethodCues cues;
   cues.method = label;
-  const std::vector<std::size_t> places = felt_with(study, method, cues);
+  const std::vector<std::size_t> places = places_with_trace(study, method, cues);
   const Answers answers = all_answers(study, places);
-  const std::vector<ParticipantAnswers> all = by_participant(study, places, answers, cues);
-  put_participants(cues, all, study.classes);
+  const std::vector<ParticipantAnswers> all = participant_answers(study, places, answers, cues);
+  set_participants(cues, all, study.classes);
   if (all.empty()) return cues;
   const CueStatistics statistics =
       cue_statistics(all, static_cast<std::uint64_t>(method), study.jobs);
@@ -177,8 +171,10 @@ MethodCues method_cues(const FeltStudy& study, int method, const std::string& la
     static_cast<MatchingNoise&>(cues.observers.back()) = answers[observer];
   }
   cues.match = statistics.match;
-  if (cues.match && !observer_of(cues, cues.match->best).is_as_uncertain()) {
-    cues.match->is_distinct = false;
+  if (cues.match) {
+    cues.match->is_distinct &=
+        std::ranges::find(cues.observers, cues.match->best, &ObserverFigures::cue)
+            ->is_as_uncertain();
   }
   cues.min_per_class = min_per_class(all);
   return cues;
@@ -186,48 +182,47 @@ MethodCues method_cues(const FeltStudy& study, int method, const std::string& la
 
 using WarningTexts = std::vector<std::string>;
 
-constexpr int kMinTrials = 2;
+constexpr int kMinTrialsPerClass = 2;
 
-void warn_of_study(const Outcomes& outcomes, const CueReport& report, WarningTexts& warnings) {
+void add_study_warnings(const Outcomes& outcomes, const CueReport& report, WarningTexts& warnings) {
   if (outcomes.visual) {
     warnings.emplace_back("Seen on a screen, not felt: the observers use forces that nobody felt.");
   }
   if (report.plane_source == kPlaneFromTraces) {
     warnings.emplace_back(
-        "Neither the study's pack nor its images were found: the parts of the plane are inferred "
-        "from where hands had contact, so `everything` is slightly less accurate.");
+        "Neither the study's pack nor its images were found: the plane's size is inferred from "
+        "where hands had contact, so `everything` is slightly less accurate.");
   }
 }
 
-void warn_of_trials(const MethodCues& cues, WarningTexts& warnings) {
+void add_trial_warnings(const MethodCues& cues, WarningTexts& warnings) {
   if (cues.without_trace > 0) {
     warnings.push_back(
-        fmt::format("{}: {} without a trace left out; accuracy here is that of the other trials.",
+        fmt::format("{}: {} without a trace omitted; accuracy is that of the other trials.",
                     cues.method, counted(cues.without_trace, "trial")));
   }
   if (cues.unjudged > 0) {
-    warnings.push_back(
-        fmt::format("{}: {} left out, because no other trial of the class exists for the observers "
-                    "to learn from.",
-                    cues.method, counted(cues.unjudged, "trial")));
+    warnings.push_back(fmt::format(
+        "{}: {} omitted, because the observers cannot learn the class from another trial.",
+        cues.method, counted(cues.unjudged, "trial")));
   }
 }
 
-void warn_of_numbers(const MethodCues& cues, WarningTexts& warnings) {
+void add_number_warnings(const MethodCues& cues, WarningTexts& warnings) {
   if (cues.trials == 0) {
     warnings.push_back(cues.method + ": no trial can be judged by the observers.");
     return;
   }
-  if (cues.min_per_class < kMinTrials) {
+  if (cues.min_per_class < kMinTrialsPerClass) {
     warnings.push_back(fmt::format(
-        "{}: somebody has fewer than {} trials of a class, so the observers learn what it feels "
-        "like only from other participants, and the available accuracy is too low.",
-        cues.method, kMinTrials));
+        "{}: a participant has fewer than {} trials of a class, so the observers learn the class "
+        "only from other participants, and the available accuracy is too low.",
+        cues.method, kMinTrialsPerClass));
   }
   const auto participants = static_cast<int>(cues.participants.size());
   if (participants < kMinForVerdict) {
     warnings.push_back(
-        fmt::format("{}: {} cannot decide which cue was used: a verdict needs {} or more, because "
+        fmt::format("{}: {} cannot decide which cue was used: a verdict needs at least {}, because "
                     "intervals over fewer are too narrow.",
                     cues.method, counted(participants, "participant"), kMinForVerdict));
   } else if (cues.match && !cues.match->difference.interval) {
@@ -237,28 +232,28 @@ void warn_of_numbers(const MethodCues& cues, WarningTexts& warnings) {
   }
 }
 
-void warn_of_figures(const MethodCues& cues, double chance, WarningTexts& warnings) {
-  for (const ObserverFigures& one : cues.observers) {
-    const std::string_view title = title_of(one.cue);
-    if (one.mean.mean.value_or(0.0) <= chance) {
+void add_observer_warnings(const MethodCues& cues, double chance, WarningTexts& warnings) {
+  for (const ObserverFigures& observer : cues.observers) {
+    const std::string_view title = title_of(observer.cue);
+    if (observer.mean.mean.value_or(0.0) <= chance) {
       warnings.push_back(fmt::format(
-          "{}: {} tells the classes apart no better than chance, so its use cannot be judged.",
+          "{}: {} distinguishes the classes no better than chance, so its use cannot be judged.",
           cues.method, title));
-    } else if (one.wanted_accuracy > 0.0 && !one.is_as_uncertain()) {
-      const bool less = one.matched_accuracy < one.wanted_accuracy;
+    } else if (observer.target_accuracy > 0.0 && !observer.is_as_uncertain()) {
+      const bool is_less_accurate = observer.matched_accuracy < observer.target_accuracy;
       warnings.push_back(fmt::format(
           "{}: {} cannot be as uncertain as participants: {} it is right in {} of trials, "
           "participants in {}. {}",
-          cues.method, title, less ? "even without noise" : "even with the most noise",
-          share_figure(one.matched_accuracy), share_figure(one.wanted_accuracy),
-          less ? "They used something else as well, or the observer has too few trials to learn "
-                 "from."
-               : "Participants' errors have causes other than noise."));
-    } else if (one.efficiency.value.value_or(0.0) > 1.0) {
-      warnings.push_back(
-          fmt::format("{}: participants did better than {} alone allows: they used something else "
-                      "as well, or the observer has too few trials to learn from.",
-                      cues.method, title));
+          cues.method, title, is_less_accurate ? "even without noise" : "even with the most noise",
+          share_figure(observer.matched_accuracy), share_figure(observer.target_accuracy),
+          is_less_accurate
+              ? "They used other cues as well, or the observer has too few trials to learn from."
+              : "Participants' errors have causes other than noise."));
+    } else if (observer.efficiency.value.value_or(0.0) > 1.0) {
+      warnings.push_back(fmt::format(
+          "{}: participants did better than with {} only: they used other cues as well, "
+          "or the observer has too few trials to learn from.",
+          cues.method, title));
     }
   }
 }
@@ -266,11 +261,11 @@ void warn_of_figures(const MethodCues& cues, double chance, WarningTexts& warnin
 /// \param report  complete except for its warnings
 std::vector<std::string> cue_warnings(const Outcomes& outcomes, const CueReport& report) {
   WarningTexts warnings;
-  warn_of_study(outcomes, report, warnings);
+  add_study_warnings(outcomes, report, warnings);
   for (const MethodCues& cues : report.methods) {
-    warn_of_trials(cues, warnings);
-    warn_of_numbers(cues, warnings);
-    warn_of_figures(cues, report.chance, warnings);
+    add_trial_warnings(cues, warnings);
+    add_number_warnings(cues, warnings);
+    add_observer_warnings(cues, report.chance, warnings);
   }
   return warnings;
 }
@@ -304,7 +299,7 @@ CueReport make_cues(const record::StudyStore& store, const study::StudyKey& key,
   report.chance = 1.0 / static_cast<double>(outcomes.classes.size());
   FeltStudy study{
       counted_trials(outcomes), {}, static_cast<int>(outcomes.classes.size()), options.jobs};
-  const StudyPlane plane = plane_to_feel(store, key, study.trials, options);
+  const StudyPlane plane = plane_for_features(store, key, study.trials, options);
   report.plane_source = plane.source;
   study.felt =
       feel_traces(store, key, study.trials, plane.geometry, options.jobs, options.progress);

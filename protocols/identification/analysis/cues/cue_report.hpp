@@ -1,6 +1,6 @@
-/// \file Which cue did participants use? Compares their answers with those of ideal observers that
-/// feel what each hand felt. Source: docs/statistics.md. Format of the JSON:
-/// docs/data-dictionary.md, "Cues".
+/// \file Tests which cue participants used: compares their answers with those of ideal observers that
+/// get the same traces. Source: docs/statistics.md. Format of the JSON: docs/data-dictionary.md,
+/// "Cues".
 #pragma once
 
 #include "analysis/outcomes/outcomes.hpp"
@@ -39,11 +39,10 @@ using AnswerCounts = std::vector<std::vector<double>>;
 
 /// The noise that makes an observer as accurate as the participants.
 struct MatchingNoise {
-  /// SD on each felt log intensity; 0 if the observer is no more accurate even without noise.
+  /// SD on each felt log intensity; 0 if the observer is no more accurate without noise.
   double matched_noise = 0.0;
-  double matched_accuracy =
-      0.0;  ///< the observer's accuracy with it, on the trials that determine it
-  double wanted_accuracy = 0.0;  ///< the participants' accuracy on these trials
+  double matched_accuracy = 0.0;  ///< of the observer, on the trials that determine the noise
+  double target_accuracy = 0.0;   ///< of the participants on these trials
 };
 
 /// One observer's answers to one method's trials.
@@ -53,22 +52,21 @@ struct ObserverFigures : MatchingNoise {
   std::vector<double> accuracy;    ///< in the order of MethodCues::participants
   MeanEstimate mean;               ///< mean of `accuracy`: the attainable accuracy
   CueFigure efficiency;            ///< participants' mean accuracy divided by this observer's
-  CueFigure corrected_efficiency;  ///< the same ratio of the accuracies above chance
+  CueFigure corrected_efficiency;  ///< the ratio of the accuracies above chance
   /// Mean over presented classes of the Jensen-Shannon divergence between participants' and
   /// observer's answers, bits: 0 if confusions are the same, at most 1. By the jackknife.
   CueFigure divergence;
-  AnswerCounts matched_confusion;  ///< confusion with that noise
-  CueFigure matched_divergence;    ///< divergence with that noise
+  AnswerCounts matched_confusion;  ///< with matching noise
+  CueFigure matched_divergence;    ///< with matching noise
 
-  /// Whether noise made the observer as accurate as the participants, to within one percentage
-  /// point.
+  /// Whether noise makes the observer as accurate as the participants, within one percentage point.
   [[nodiscard]] bool is_as_uncertain() const noexcept {
-    return std::abs(matched_accuracy - wanted_accuracy) <= 0.01;
+    return std::abs(matched_accuracy - target_accuracy) <= 0.01;
   }
 };
 
-/// The minimum number of participants for a verdict on the best observer; with fewer, intervals
-/// over participants are too narrow.
+/// The minimum number of participants for a verdict on the best observer: with fewer, intervals are
+/// too narrow.
 inline constexpr int kMinForVerdict = 6;
 
 /// The observer whose confusions are nearest to the participants'. Noise makes each observer as
@@ -92,7 +90,7 @@ struct MethodCues {
   std::vector<std::string> participants;  ///< with a judged trial, in the order of sessions
   std::vector<int> participant_trials;    ///< number of judged trials, by participant
   std::vector<double> human_accuracy;     ///< by participant, on the same trials
-  int min_per_class = 0;  ///< minimum number of judged trials over classes and participants
+  int min_per_class = 0;                  ///< judged trials, minimum over classes and participants
   MeanEstimate human_mean;
   AnswerCounts human_confusion;  ///< of judged trials with a response
   /// By presented class. Trials without a response are wrong in accuracy, and left out of
@@ -103,7 +101,7 @@ struct MethodCues {
 };
 
 /// CueReport::plane_source if the plane's size comes from traces only.
-inline constexpr const char* kPlaneFromTraces = "the farthest that hands had contact";
+inline constexpr const char* kPlaneFromTraces = "the farthest contact of all hands";
 
 struct CueReport {
   bool simulated = false;
@@ -118,14 +116,14 @@ struct CueOptions {
   int jobs = 0;                  ///< threads; 0: one for each core
   std::filesystem::path pack{};  ///< gives the plane's size; empty: the path in the key
   /// Called on the calling thread with the number of traces read so far.
-  std::function<void(int done, int of)> progress{};
+  std::function<void(int done, int total)> progress{};
 };
 
 /// The number of traces that make_cues reads: one for each counted trial.
 [[nodiscard]] int traces_to_read(const Outcomes& outcomes);
 
-/// Computes the felt features of all counted trials from their traces, and lets the observers judge
-/// each trial by the others. The result does not depend on the number of threads. Only the calling
+/// Computes the felt features of all counted trials from their traces; observers judge each trial
+/// from the others. The result does not depend on the number of threads. Only the calling
 /// thread uses the store. Memory: features of all trials, 200 bytes each, and 64 traces.
 /// \throws VerificationError if a participant's key or a trace's seal does not open
 /// \throws StoreError if the database cannot be read

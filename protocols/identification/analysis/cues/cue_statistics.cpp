@@ -13,14 +13,13 @@
 #include <vector>
 
 namespace touchtrial::analysis::identification {
-
 namespace {
 
 double total(std::span<const double> counts) noexcept {
   return std::accumulate(counts.begin(), counts.end(), 0.0);
 }
 
-/// p log2 (p / middle), which is 0 where p is 0.
+/// p log2 (p / middle); 0 for p = 0.
 double information(double p, double middle) noexcept {
   return p > 0.0 ? p * std::log2(p / middle) : 0.0;
 }
@@ -28,9 +27,9 @@ double information(double p, double middle) noexcept {
 constexpr std::size_t kObservers = kCues.size();
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
-/// The sums behind all numbers, for one participant or several. The first group of values holds the
-/// accuracies of the participant and of the observers. The second group holds the answers to trials
-/// with a response: those of the participant, of the ideal observers and of the matched observers.
+/// The sums over participants from which all numbers follow. The values are the accuracies of the
+/// participant and of the observers, then the counts of answers to trials with a response: of the
+/// participant, of the ideal observers and of the matched observers.
 class Sums {
  public:
   explicit Sums(int classes)
@@ -38,14 +37,14 @@ class Sums {
         cells_(static_cast<std::size_t>(classes) * static_cast<std::size_t>(classes)),
         values_(1 + kObservers + (1 + 2 * kObservers) * cells_, 0.0) {}
 
-  explicit Sums(const ParticipantAnswers& one) : Sums(one.classes) {
+  explicit Sums(const ParticipantAnswers& participant) : Sums(participant.classes) {
     participants_ = 1;
-    values_[0] = one.human_accuracy();
-    std::ranges::copy(one.human, values_.begin() + answers_at(0));
+    values_[0] = participant.human_accuracy();
+    std::ranges::copy(participant.human, values_.begin() + answers_at(0));
     for (std::size_t i = 0; i < kObservers; ++i) {
-      values_[1 + i] = one.available(i);
-      std::ranges::copy(one.ideal_of_answered[i], values_.begin() + answers_at(1 + i));
-      std::ranges::copy(one.matched_of_answered[i],
+      values_[1 + i] = participant.observer_accuracy(i);
+      std::ranges::copy(participant.answered_ideal[i], values_.begin() + answers_at(1 + i));
+      std::ranges::copy(participant.answered_matched[i],
                         values_.begin() + answers_at(kFirstMatched + i));
     }
   }
@@ -62,11 +61,11 @@ class Sums {
   }
 
   /// The efficiency above chance; NaN unless the observer is above chance.
-  [[nodiscard]] double corrected(std::size_t observer) const noexcept {
-    const double by_chance = static_cast<double>(participants_) / classes_;
-    const double available = values_[1 + observer] - by_chance;
-    // A difference within rounding counts as 0.
-    return available > 1e-12 * participants_ ? (values_[0] - by_chance) / available : kUndefined;
+  [[nodiscard]] double corrected_efficiency(std::size_t observer) const noexcept {
+    const double chance = static_cast<double>(participants_) / classes_;
+    const double available = values_[1 + observer] - chance;
+    // 1e-12 allows for rounding.
+    return available > 1e-12 * participants_ ? (values_[0] - chance) / available : kUndefined;
   }
 
   /// The divergence in bits; NaN without a trial with a response.
@@ -82,11 +81,11 @@ class Sums {
   /// Index of the first matched observer's answers.
   static constexpr std::size_t kFirstMatched = 1 + kObservers;
 
-  [[nodiscard]] std::ptrdiff_t answers_at(std::size_t whose) const noexcept {
-    return static_cast<std::ptrdiff_t>(1 + kObservers + whose * cells_);
+  [[nodiscard]] std::ptrdiff_t answers_at(std::size_t observer) const noexcept {
+    return static_cast<std::ptrdiff_t>(1 + kObservers + observer * cells_);
   }
-  [[nodiscard]] std::span<const double> answers(std::size_t whose) const noexcept {
-    return std::span(values_).subspan(static_cast<std::size_t>(answers_at(whose)), cells_);
+  [[nodiscard]] std::span<const double> answers(std::size_t observer) const noexcept {
+    return std::span(values_).subspan(static_cast<std::size_t>(answers_at(observer)), cells_);
   }
 
   int classes_;
@@ -95,10 +94,10 @@ class Sums {
   std::vector<double> values_;
 };
 
-Sums sum_of(const std::vector<Sums>& each, int classes) {
-  Sums together(classes);
-  for (const Sums& one : each) together.add(one);
-  return together;
+Sums sum_of(const std::vector<Sums>& participants, int classes) {
+  Sums sum(classes);
+  for (const Sums& participant : participants) sum.add(participant);
+  return sum;
 }
 
 /// Indices into the numbers of a study: kObservers of each kind.
@@ -115,7 +114,7 @@ Numbers efficiencies_of(const Sums& sums) {
   Numbers numbers{};
   for (std::size_t i = 0; i < kObservers; ++i) {
     numbers[kEfficiencyAt + i] = sums.efficiency(i);
-    numbers[kCorrectedAt + i] = sums.corrected(i);
+    numbers[kCorrectedAt + i] = sums.corrected_efficiency(i);
   }
   return numbers;
 }
@@ -129,19 +128,19 @@ Numbers divergences_of(const Sums& sums) {
   return numbers;
 }
 
-/// The numbers of resampled studies. A resampled study draws as many participants as there are,
-/// with replacement.
+/// The numbers of bootstrap samples.
 struct Draws {
   std::size_t participants = 0;
   std::vector<Numbers> numbers{};  ///< empty with fewer than two participants
 };
 
 /// Draws only efficiencies; divergences of bootstrap samples are biased upward.
-Draws drawn(const std::vector<Sums>& participants, int classes, std::uint64_t index, int jobs) {
+Draws bootstrap_draws(const std::vector<Sums>& participants, int classes, std::uint64_t index,
+                      int jobs) {
   if (participants.size() < 2) return {participants.size()};
   std::vector<Numbers> draws(kBootstrapDraws);
   const auto draw = [&](std::size_t i) {
-    // Each draw has its own stream, so the result does not depend on the threads.
+    // One stream per draw, so that the result does not depend on the threads.
     RandomStream random(0, "cues: participants", (index << 32U) + i);
     Sums sums(classes);
     for (std::size_t p = 0; p < participants.size(); ++p) {
@@ -156,21 +155,21 @@ Draws drawn(const std::vector<Sums>& participants, int classes, std::uint64_t in
 /// The interval of a number; nothing if the number is undefined in any draw.
 std::optional<Interval> interval_of(const Draws& draws, std::size_t number) {
   std::vector<double> values;
-  for (const Numbers& one : draws.numbers) {
-    if (std::isnan(one[number])) return std::nullopt;
-    values.push_back(one[number]);
+  for (const Numbers& numbers : draws.numbers) {
+    if (std::isnan(numbers[number])) return std::nullopt;
+    values.push_back(numbers[number]);
   }
   if (values.empty()) return std::nullopt;
   return expanded_percentiles(std::move(values), draws.participants);
 }
 
-CueFigure number_at(std::size_t at, const Numbers& observed, const Draws& draws) {
-  if (std::isnan(observed[at])) return {};
-  return {observed[at], interval_of(draws, at)};
+CueFigure number_at(std::size_t index, const Numbers& observed, const Draws& draws) {
+  if (std::isnan(observed[index])) return {};
+  return {observed[index], interval_of(draws, index)};
 }
 
-/// The numbers without each participant, by sums from both ends of the list.
-std::vector<Numbers> without_each(const std::vector<Sums>& participants, int classes) {
+/// The numbers without each participant, from sums over both ends of the list.
+std::vector<Numbers> leave_one_out_numbers(const std::vector<Sums>& participants, int classes) {
   std::vector<Sums> after(participants.size(), Sums(classes));
   for (std::size_t i = participants.size() - 1; i > 0; --i) {
     after[i - 1] = after[i];
@@ -187,44 +186,46 @@ std::vector<Numbers> without_each(const std::vector<Sums>& participants, int cla
 }
 
 constexpr Interval kBits{0.0, 1.0};
-/// The range for differences and for numbers to rank, which are not cut at 0.
+/// For differences and for ranks, which are not truncated at 0.
 constexpr Interval kAnySign{-2.0, 2.0};
 
 /// The jackknife estimate of a number, or of the difference of two.
-/// \param without  the same numbers without each participant
-CueFigure jackknifed(const Numbers& observed, const std::vector<Numbers>& without,
-                     const Interval& range, std::size_t at, std::optional<std::size_t> less = {}) {
+/// \param leave_one_out  the numbers without each participant
+CueFigure jackknife_figure(const Numbers& observed, const std::vector<Numbers>& leave_one_out,
+                           const Interval& range, std::size_t index,
+                           std::optional<std::size_t> subtracted = {}) {
   const auto number_of = [&](const Numbers& numbers) {
-    return less ? numbers[at] - numbers[*less] : numbers[at];
+    return subtracted ? numbers[index] - numbers[*subtracted] : numbers[index];
   };
-  const double all = number_of(observed);
-  if (std::isnan(all)) return {};
+  const double value = number_of(observed);
+  if (std::isnan(value)) return {};
   std::vector<double> values;
-  for (const Numbers& one : without) values.push_back(number_of(one));
+  for (const Numbers& numbers : leave_one_out) values.push_back(number_of(numbers));
   if (values.size() < 2 || std::ranges::any_of(values, [](double v) { return std::isnan(v); })) {
-    return {all, std::nullopt};
+    return {value, std::nullopt};
   }
-  const JackknifeEstimate found = jackknife(all, values, range);
-  return {found.value, found.interval};
+  const JackknifeEstimate estimate = jackknife(value, values, range);
+  return {estimate.value, estimate.interval};
 }
 
 /// The two matched observers with the smallest divergences.
-std::optional<CueMatch> cue_match_of(const Numbers& observed, const std::vector<Numbers>& without) {
+std::optional<CueMatch> cue_match_of(const Numbers& observed,
+                                     const std::vector<Numbers>& leave_one_out) {
   std::array<std::size_t, kObservers> order{};
   std::array<double, kObservers> divergence{};
   for (std::size_t i = 0; i < kObservers; ++i) {
-    const CueFigure found = jackknifed(observed, without, kAnySign, kMatchedAt + i);
-    if (!found.value) return std::nullopt;
-    divergence[i] = *found.value;
+    const CueFigure estimate = jackknife_figure(observed, leave_one_out, kAnySign, kMatchedAt + i);
+    if (!estimate.value) return std::nullopt;
+    divergence[i] = *estimate.value;
     order[i] = i;
   }
   std::ranges::stable_sort(order, {}, [&](std::size_t i) { return divergence[i]; });
   CueMatch match;
   match.best = kCues[order[0]];
   match.second = kCues[order[1]];
-  match.difference =
-      jackknifed(observed, without, kAnySign, kMatchedAt + order[1], kMatchedAt + order[0]);
-  match.is_distinct = without.size() >= kMinForVerdict && match.difference.interval &&
+  match.difference = jackknife_figure(observed, leave_one_out, kAnySign, kMatchedAt + order[1],
+                                      kMatchedAt + order[0]);
+  match.is_distinct = leave_one_out.size() >= kMinForVerdict && match.difference.interval &&
                       match.difference.interval->low > 0.0;
   return match;
 }
@@ -232,16 +233,15 @@ std::optional<CueMatch> cue_match_of(const Numbers& observed, const std::vector<
 }  // namespace
 
 double jensen_shannon_bits(std::span<const double> a, std::span<const double> b) noexcept {
-  const double all_a = total(a);
-  const double all_b = total(b);
+  const double total_a = total(a);
+  const double total_b = total(b);
   double bits = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) {
-    const double p = a[i] / all_a;
-    const double q = b[i] / all_b;
+    const double p = a[i] / total_a;
+    const double q = b[i] / total_b;
     const double middle = 0.5 * (p + q);
     bits += 0.5 * (information(p, middle) + information(q, middle));
   }
-  // Rounding may lead out of the range of the divergence.
   return std::clamp(bits, 0.0, 1.0);
 }
 
@@ -263,16 +263,17 @@ std::optional<double> answer_divergence(std::span<const double> a, std::span<con
 
 CueStatistics cue_divergences(std::span<const ParticipantAnswers> participants) {
   if (participants.empty()) return {};
-  const std::vector<Sums> each(participants.begin(), participants.end());
+  const std::vector<Sums> sums(participants.begin(), participants.end());
   const int classes = participants.front().classes;
-  const Numbers observed = divergences_of(sum_of(each, classes));
-  const std::vector<Numbers> without = without_each(each, classes);
+  const Numbers observed = divergences_of(sum_of(sums, classes));
+  const std::vector<Numbers> leave_one_out = leave_one_out_numbers(sums, classes);
   CueStatistics statistics;
   for (std::size_t i = 0; i < kObservers; ++i) {
-    statistics.divergence[i] = jackknifed(observed, without, kBits, kDivergenceAt + i);
-    statistics.matched_divergence[i] = jackknifed(observed, without, kBits, kMatchedAt + i);
+    statistics.divergence[i] = jackknife_figure(observed, leave_one_out, kBits, kDivergenceAt + i);
+    statistics.matched_divergence[i] =
+        jackknife_figure(observed, leave_one_out, kBits, kMatchedAt + i);
   }
-  statistics.match = cue_match_of(observed, without);
+  statistics.match = cue_match_of(observed, leave_one_out);
   return statistics;
 }
 
@@ -280,13 +281,13 @@ CueStatistics cue_statistics(std::span<const ParticipantAnswers> participants, s
                              int jobs) {
   CueStatistics statistics = cue_divergences(participants);
   if (participants.empty()) return statistics;
-  const std::vector<Sums> each(participants.begin(), participants.end());
+  const std::vector<Sums> sums(participants.begin(), participants.end());
   const int classes = participants.front().classes;
-  const Numbers observed = efficiencies_of(sum_of(each, classes));
-  const Draws draws = drawn(each, classes, index, jobs);
+  const Numbers observed = efficiencies_of(sum_of(sums, classes));
+  const Draws draws = bootstrap_draws(sums, classes, index, jobs);
   for (std::size_t i = 0; i < kObservers; ++i) {
     statistics.efficiency[i] = number_at(kEfficiencyAt + i, observed, draws);
-    statistics.corrected[i] = number_at(kCorrectedAt + i, observed, draws);
+    statistics.corrected_efficiency[i] = number_at(kCorrectedAt + i, observed, draws);
   }
   return statistics;
 }
@@ -297,7 +298,7 @@ ParticipantAnswers::ParticipantAnswers(std::string name, int class_count)
       presented(static_cast<std::size_t>(class_count), 0),
       no_response(presented),
       human(presented.size() * presented.size(), 0.0) {
-  for (auto* counts : {&ideal, &matched, &ideal_of_answered, &matched_of_answered}) {
+  for (auto* counts : {&ideal, &matched, &answered_ideal, &answered_matched}) {
     counts->fill(human);
   }
 }
@@ -320,8 +321,8 @@ void ParticipantAnswers::add(const JudgedTrial& trial) {
     add_shares(ideal[observer], trial.ideal[observer]);
     add_shares(matched[observer], trial.matched[observer]);
     if (!trial.response) continue;
-    add_shares(ideal_of_answered[observer], trial.ideal[observer]);
-    add_shares(matched_of_answered[observer], trial.matched[observer]);
+    add_shares(answered_ideal[observer], trial.ideal[observer]);
+    add_shares(answered_matched[observer], trial.matched[observer]);
   }
 }
 

@@ -18,12 +18,11 @@
 #include <fmt/format.h>
 
 namespace touchtrial::analysis::identification {
-
 namespace {
 
 const TrialOutcome& trial_of(const Outcomes& outcomes, int session, int trial) {
-  const auto found = std::ranges::find_if(outcomes.trials, [&](const TrialOutcome& one) {
-    return one.scored && one.row.session == session && one.row.trial == trial;
+  const auto found = std::ranges::find_if(outcomes.trials, [&](const TrialOutcome& outcome) {
+    return outcome.scored && outcome.row.session == session && outcome.row.trial == trial;
   });
   if (found == outcomes.trials.end()) {
     throw StoreError(
@@ -36,10 +35,10 @@ const TrialOutcome& trial_of(const Outcomes& outcomes, int session, int trial) {
 
 record::Trace trace_of(const record::StudyStore& store, const study::StudyKey& key,
                        const TrialOutcome& trial) {
-  const std::array<const TrialOutcome*, 1> wanted{&trial};
+  const std::array<const TrialOutcome*, 1> trials{&trial};
   record::Trace trace;
   const auto missing = visit_traces(
-      store, key, wanted, 1, [&](std::size_t, const record::Trace& opened) { trace = opened; });
+      store, key, trials, 1, [&](std::size_t, const record::Trace& opened) { trace = opened; });
   if (missing.empty()) return trace;
   throw StoreError(fmt::format("session {}, trial {}: has no trace; choose another trial",
                                trial.row.session, trial.row.trial));
@@ -71,7 +70,7 @@ PathTexture texture_of(const study::StudyKey& key, const study::StimulusIndex& s
   }
 }
 
-/// The part of the plane that the hand reached, if the plane's size is unknown.
+/// The part of the plane that the hand reached, for planes of unknown size.
 PlaneGeometry explored_plane(std::span<const PathPoint> points, double pitch_mm) {
   Vec2 furthest{};
   for (const PathPoint& point : points) {
@@ -93,18 +92,18 @@ double tangential_rms_n(std::span<const record::TraceSample> samples) {
   return std::sqrt(squares / static_cast<double>(samples.size()));
 }
 
-const TrialOutcome* trial_named(const Outcomes& outcomes, const TrialName& name) {
+const TrialOutcome* find_trial(const Outcomes& outcomes, const TrialName& name) {
   const TrialOutcome* found = nullptr;
-  for (const TrialOutcome& one : outcomes.trials) {
-    const bool fits =
-        one.scored && one.participant == name.participant && one.row.trial == name.trial;
-    if (fits && (found == nullptr || (one.counted && !found->counted))) found = &one;
+  for (const TrialOutcome& trial : outcomes.trials) {
+    const bool is_named =
+        trial.scored && trial.participant == name.participant && trial.row.trial == name.trial;
+    if (is_named && (found == nullptr || (trial.counted && !found->counted))) found = &trial;
   }
   return found;
 }
 
 constexpr double kMidGrey = 127.5;
-constexpr double kDeviations = 2.5;
+constexpr double kMaxDeviations = 2.5;
 
 std::vector<double> surface_of(engine::FieldView field) {
   if (field.model == engine::ModelKind::paper) return {field.heights.begin(), field.heights.end()};
@@ -122,17 +121,17 @@ std::vector<double> surface_of(engine::FieldView field) {
 }  // namespace
 
 std::vector<PathPoint> thinned_path(const record::Trace& trace, int count) {
-  if (count < 1) throw std::invalid_argument("thinned_path: there must be at least one point");
+  if (count < 1) throw std::invalid_argument("thinned_path: needs at least one point");
   const std::span<const record::TraceSample> samples(trace.samples);
-  const auto most = static_cast<std::size_t>(count);
-  const std::size_t step = std::max<std::size_t>(1, (samples.size() + most - 1) / most);
+  const auto max_points = static_cast<std::size_t>(count);
+  const std::size_t step = std::max<std::size_t>(1, (samples.size() + max_points - 1) / max_points);
   std::vector<PathPoint> points;
   for (std::size_t i = 0; i < samples.size(); i += step) {
-    const record::TraceSample& at = samples[i];
-    points.push_back({{at.position_mm.x, at.position_mm.y},
-                      {at.force_n.x, at.force_n.y},
+    const record::TraceSample& sample = samples[i];
+    points.push_back({{sample.position_mm.x, sample.position_mm.y},
+                      {sample.force_n.x, sample.force_n.y},
                       tangential_rms_n(samples.subspan(i, std::min(step, samples.size() - i))),
-                      at.force_n.z > 0.0});
+                      sample.force_n.z > 0.0});
   }
   return points;
 }
@@ -140,21 +139,21 @@ std::vector<PathPoint> thinned_path(const record::Trace& trace, int count) {
 ExplorationPath exploration_path(const record::StudyStore& store, const study::StudyKey& key,
                                  const Outcomes& outcomes, int session, int trial,
                                  const std::filesystem::path& pack) {
-  const TrialOutcome& felt = trial_of(outcomes, session, trial);
-  const record::Trace trace = trace_of(store, key, felt);
+  const TrialOutcome& outcome = trial_of(outcomes, session, trial);
+  const record::Trace trace = trace_of(store, key, outcome);
   ExplorationPath path;
   path.simulated = outcomes.simulated;
   const bool is_public = outcomes.collection.is_public;
   path.session = is_public ? 0 : session;
-  path.trial = is_public ? felt.stimulus.method + 1 : trial;
-  path.participant = is_public ? "" : felt.participant;
-  path.class_label = outcomes.classes[felt.stimulus.class_index];
-  path.exemplar = outcomes.exemplars[felt.stimulus.class_index][felt.stimulus.exemplar];
-  path.method = outcomes.methods[felt.stimulus.method];
-  path.answered_right = felt.correct();
+  path.trial = is_public ? outcome.stimulus.method + 1 : trial;
+  path.participant = is_public ? "" : outcome.participant;
+  path.class_label = outcomes.classes[outcome.stimulus.class_index];
+  path.exemplar = outcomes.exemplars[outcome.stimulus.class_index][outcome.stimulus.exemplar];
+  path.method = outcomes.methods[outcome.stimulus.method];
+  path.answered_right = outcome.correct();
   path.duration_s = static_cast<double>(trace.samples.size()) / trace.rate_hz;
   path.points = thinned_path(trace);
-  path.texture = texture_of(key, felt.stimulus, pack_of(store, key, pack));
+  path.texture = texture_of(key, outcome.stimulus, pack_of(store, key, pack));
   PlaneGeometry& plane = path.texture.geometry;
   if (plane.width_px == 0) plane = explored_plane(path.points, key.study.rendering.pitch_mm);
   return path;
@@ -168,12 +167,12 @@ TrialName trial_name(const std::string& text) {
   }
   throw UsageError(
       one_line(text) +
-      ": is not the name of a trial; write PARTICIPANT:N, like P01:3 for P01's third trial");
+      ": is not the name of a trial; write PARTICIPANT:N, such as P01:3 for P01's third trial");
 }
 
-ExplorationPath exploration_named(const record::StudyStore& store, const study::StudyKey& key,
-                                  const Outcomes& outcomes, const TrialName& name) {
-  const TrialOutcome* trial = trial_named(outcomes, name);
+ExplorationPath find_exploration(const record::StudyStore& store, const study::StudyKey& key,
+                                 const Outcomes& outcomes, const TrialName& name) {
+  const TrialOutcome* trial = find_trial(outcomes, name);
   if (trial == nullptr) {
     throw UsageError(fmt::format(
         "{}:{}: the study has no such scored trial; choose one that `touchtrial export` lists",
@@ -187,9 +186,9 @@ std::vector<ExplorationPath> first_explorations(const record::StudyStore& store,
                                                 const Outcomes& outcomes) {
   std::vector<ExplorationPath> paths;
   for (int method = 0; method < static_cast<int>(outcomes.methods.size()); ++method) {
-    const auto first = std::ranges::find_if(outcomes.trials, [&](const TrialOutcome& one) {
-      return one.counted && one.stimulus.method == method &&
-             store.sealed_trace(one.row.session, one.row.trial).has_value();
+    const auto first = std::ranges::find_if(outcomes.trials, [&](const TrialOutcome& trial) {
+      return trial.counted && trial.stimulus.method == method &&
+             store.sealed_trace(trial.row.session, trial.row.trial).has_value();
     });
     if (first == outcomes.trials.end()) continue;
     paths.push_back(exploration_path(store, key, outcomes, first->row.session, first->row.trial));
@@ -204,7 +203,7 @@ GreyImage field_picture(engine::FieldView field) {
   const double deviation = standard_deviation(surface, mean, static_cast<double>(surface.size()));
   // A field that varies only by rounding is flat.
   const bool is_flat = deviation <= 1e-6 * (1.0 + std::abs(mean));
-  const double gain = is_flat ? 0.0 : kMidGrey / (kDeviations * deviation);
+  const double gain = is_flat ? 0.0 : kMidGrey / (kMaxDeviations * deviation);
   GreyImage picture(field.geometry.height_px, field.geometry.width_px);
   for (std::size_t i = 0; i < surface.size(); ++i) {
     const double grey = kMidGrey + gain * (surface[i] - mean);

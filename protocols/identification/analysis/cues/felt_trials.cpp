@@ -18,47 +18,47 @@
 namespace touchtrial::analysis::identification {
 namespace {
 
-constexpr std::size_t kBatch = 64;
+constexpr std::size_t kBatchSize = 64;
 
-struct WaitingTrace {
+struct PendingTrace {
   std::size_t place = 0;
   const record::TrialRow* row = nullptr;
-  const SecretKey* own = nullptr;
-  record::SealedTrace box;
-  std::string fault;  ///< why it did not open; empty if it opened
+  const SecretKey* key = nullptr;
+  record::SealedTrace sealed;
+  std::string error;  ///< empty if it opened
 };
 
-std::string refusal(const record::TrialRow& row, const std::string& why) {
+std::string trace_message(const record::TrialRow& row, const std::string& error) {
   return fmt::format(
       "session {}, trial {}: the trace {}; run `touchtrial verify` and restore the "
       "database from a backup",
-      row.session, row.trial, why);
+      row.session, row.trial, error);
 }
 
-/// Stores an error instead of throwing it, so that the first trial's error is reported whichever
-/// thread finishes first.
-void open_and_visit(WaitingTrace& sealed, const TraceVisitor& visit) {
+/// Stores an error instead of throwing it, so that the error of the first trial is reported,
+/// regardless of the order of threads.
+void open_and_visit(PendingTrace& pending, const TraceVisitor& visit) {
   try {
-    const std::optional<record::Trace> trace = record::unsealed_trace(sealed.box, *sealed.own);
+    const std::optional<record::Trace> trace = record::unsealed_trace(pending.sealed, *pending.key);
     if (trace) {
-      visit(sealed.place, *trace);
+      visit(pending.place, *trace);
     } else {
-      sealed.fault = "does not open";
+      pending.error = "does not open";
     }
   } catch (const StoreError& error) {
-    sealed.fault = fmt::format("does not decode ({})", error.what());
+    pending.error = fmt::format("does not decode ({})", error.what());
   }
 }
 
-void visit_batch(std::vector<WaitingTrace>& batch, int jobs, const TraceVisitor& visit) {
+void visit_batch(std::vector<PendingTrace>& batch, int jobs, const TraceVisitor& visit) {
   in_parallel(jobs, batch.size(), [&](std::size_t i) { open_and_visit(batch[i], visit); });
-  for (const WaitingTrace& sealed : batch) {
-    if (!sealed.fault.empty()) throw VerificationError(refusal(*sealed.row, sealed.fault));
+  for (const PendingTrace& pending : batch) {
+    if (!pending.error.empty()) throw VerificationError(trace_message(*pending.row, pending.error));
   }
   batch.clear();
 }
 
-engine::FeltFeatures felt_in(const record::Trace& trace, const PlaneGeometry& plane) {
+engine::FeltFeatures features_of(const record::Trace& trace, const PlaneGeometry& plane) {
   engine::TextureSense sense({.rate_hz = trace.rate_hz, .plane = plane});
   for (const record::TraceSample& sample : trace.samples)
     sense.feel(sample.position_mm, sample.force_n);
@@ -75,13 +75,12 @@ Vec2 farthest_contact_mm(const record::Trace& trace) {
   return farthest_mm;
 }
 
-/// Reduces `common` to the part that both planes have. If `common` is empty, it becomes the other
-/// plane.
+/// Reduces `common` to the part that both planes share; an empty `common` becomes `other`.
 void keep_common(PlaneGeometry& common, const PlaneGeometry& other) {
-  const bool first = common.height_px == 0;
-  common.pitch_mm = first ? other.pitch_mm : common.pitch_mm;
-  common.height_px = first ? other.height_px : std::min(common.height_px, other.height_px);
-  common.width_px = first ? other.width_px : std::min(common.width_px, other.width_px);
+  const bool is_empty = common.height_px == 0;
+  common.pitch_mm = is_empty ? other.pitch_mm : common.pitch_mm;
+  common.height_px = is_empty ? other.height_px : std::min(common.height_px, other.height_px);
+  common.width_px = is_empty ? other.width_px : std::min(common.width_px, other.width_px);
 }
 
 PlaneGeometry plane_of_pack(const engine::Pack& pack) {
@@ -94,8 +93,8 @@ PlaneGeometry plane_of_pack(const engine::Pack& pack) {
 
 PlaneGeometry plane_of_images(const study::Study& study) {
   PlaneGeometry common;
-  for (const study::StudyClass& one : study.classes) {
-    for (const auto& image : one.images) {
+  for (const study::StudyClass& texture : study.classes) {
+    for (const auto& image : texture.images) {
       const GreyImage picture = engine::read_grey_image(study.folder / image);
       keep_common(common, {study.rendering.pitch_mm, picture.height(), picture.width()});
     }
@@ -121,17 +120,17 @@ std::vector<std::size_t> visit_traces(const record::StudyStore& store, const stu
                                       const TraceVisitor& visit, const TraceProgress& progress) {
   const SessionKeys keys = person_keys(store, key);
   std::vector<std::size_t> missing;
-  std::vector<WaitingTrace> batch;
+  std::vector<PendingTrace> batch;
   for (std::size_t place = 0; place < trials.size(); ++place) {
     const record::TrialRow& row = trials[place]->row;
-    std::optional<record::SealedTrace> box = store.sealed_trace(row.session, row.trial);
-    const auto own = keys.find(row.session);
-    if (!box || own == keys.end() || !own->second.participant) {
+    std::optional<record::SealedTrace> sealed = store.sealed_trace(row.session, row.trial);
+    const auto person = keys.find(row.session);
+    if (!sealed || person == keys.end() || !person->second.participant) {
       missing.push_back(place);
       continue;
     }
-    batch.push_back({place, &row, &*own->second.participant, *std::move(box), {}});
-    if (batch.size() < kBatch) continue;
+    batch.push_back({place, &row, &*person->second.participant, *std::move(sealed), {}});
+    if (batch.size() < kBatchSize) continue;
     visit_batch(batch, jobs, visit);
     if (progress) progress(static_cast<int>(place), static_cast<int>(trials.size()));
   }
@@ -144,10 +143,10 @@ FeltTrials feel_traces(const record::StudyStore& store, const study::StudyKey& k
                        std::span<const TrialOutcome* const> trials, const PlaneGeometry& plane,
                        int jobs, const TraceProgress& progress) {
   FeltTrials all;
-  all.felt.resize(trials.size());
+  all.features.resize(trials.size());
   all.has_trace.resize(trials.size(), true);
   const auto feel = [&](std::size_t place, const record::Trace& trace) {
-    all.felt[place] = felt_in(trace, plane);
+    all.features[place] = features_of(trace, plane);
   };
   for (const std::size_t place : visit_traces(store, key, trials, jobs, feel, progress)) {
     all.has_trace[place] = false;
@@ -164,10 +163,10 @@ PlaneGeometry touched_plane(const record::StudyStore& store, const study::StudyK
         farthest_mm[place] = farthest_contact_mm(trace);
       }));
   PlaneGeometry plane{pitch_mm, 1, 1};
-  for (const Vec2& reached_mm : farthest_mm) {
-    plane.width_px = std::max(plane.width_px, static_cast<int>(std::ceil(reached_mm.x / pitch_mm)));
+  for (const Vec2& contact_mm : farthest_mm) {
+    plane.width_px = std::max(plane.width_px, static_cast<int>(std::ceil(contact_mm.x / pitch_mm)));
     plane.height_px =
-        std::max(plane.height_px, static_cast<int>(std::ceil(reached_mm.y / pitch_mm)));
+        std::max(plane.height_px, static_cast<int>(std::ceil(contact_mm.y / pitch_mm)));
   }
   return plane;
 }

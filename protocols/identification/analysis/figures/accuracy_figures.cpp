@@ -10,19 +10,18 @@
 #include <fmt/format.h>
 
 namespace touchtrial::analysis::identification {
-
 namespace {
 
-constexpr double kSpread = 0.6;  ///< width of the methods of one class, in widths of a class
-/// More means than these need the page's whole width.
-constexpr std::size_t kMeansOfColumn = 12;
+constexpr double kSpread = 0.6;  ///< width of the marks of one class, in widths of a class
+/// More means need the page's whole width.
+constexpr std::size_t kMaxMeansInColumn = 12;
 
-double aside(std::size_t number, std::size_t count) {
+double offset_of(std::size_t number, std::size_t count) {
   if (count < 2) return 0.0;
   return kSpread * (static_cast<double>(number) / static_cast<double>(count - 1) - 0.5);
 }
 
-/// What is drawn of a class: over participants, or as if trials were independent.
+/// An accuracy with its interval, over participants or as if trials were independent.
 struct DrawnAccuracy {
   double share = 0.0;
   Interval interval;
@@ -35,18 +34,20 @@ std::optional<DrawnAccuracy> drawn_accuracy(const ClassAccuracy& accuracy) {
   return DrawnAccuracy{*accuracy.mean.mean, accuracy.mean.interval};
 }
 
-/// What the intervals are, for captions and legends.
+/// The name of the intervals in captions and legends.
 std::string interval_name(const StudyReport& report) {
-  bool over_participants = false;
-  bool of_trials = false;
+  bool has_participant_intervals = false;
+  bool has_trial_intervals = false;
   for (const MethodReport& method : report.methods) {
-    for (const ClassAccuracy& one : method.accuracy) {
-      (one.has_interval_over_participants() ? over_participants : of_trials) = true;
+    for (const ClassAccuracy& accuracy : method.accuracy) {
+      (accuracy.has_interval_over_participants() ? has_participant_intervals
+                                                 : has_trial_intervals) = true;
     }
   }
-  if (!over_participants) return "Wilson interval (trials as if independent)";
-  return of_trials ? "t interval over participants (Wilson, of trials, where they do not differ)"
-                   : "t interval over participants";
+  if (!has_participant_intervals) return "Wilson interval (trials as if independent)";
+  return has_trial_intervals
+             ? "t interval over participants (Wilson interval of trials if they do not differ)"
+             : "t interval over participants";
 }
 
 Layer class_layer(const StudyReport& report, std::size_t number) {
@@ -56,10 +57,10 @@ Layer class_layer(const StudyReport& report, std::size_t number) {
               .glyph = series_glyph(number)};
   const std::vector<ClassAccuracy>& accuracy = report.methods[number].accuracy;
   for (std::size_t i = 0; i < accuracy.size(); ++i) {
-    const std::optional<DrawnAccuracy> one = drawn_accuracy(accuracy[i]);
-    if (!one) continue;
-    layer.rows.push_back(bar(static_cast<double>(i + 1) + aside(number, report.methods.size()),
-                             one->share, one->interval, 100.0));
+    const std::optional<DrawnAccuracy> drawn = drawn_accuracy(accuracy[i]);
+    if (!drawn) continue;
+    layer.rows.push_back(bar(static_cast<double>(i + 1) + offset_of(number, report.methods.size()),
+                             drawn->share, drawn->interval, 100.0));
     layer.rows.back().text = report.classes[i];
   }
   return layer;
@@ -71,15 +72,16 @@ std::string alt_of_methods(const StudyReport& report) {
     const MethodReport& method = report.methods[i];
     alt += fmt::format(" {}:", method.method);
     for (std::size_t k = 0; k < method.accuracy.size() && k < report.classes.size(); ++k) {
-      const auto at = drawn_accuracy(method.accuracy[k]);
-      if (!at) continue;
-      alt += fmt::format(" {} {};", report.classes[k], with_interval(at->share, at->interval));
+      const auto drawn = drawn_accuracy(method.accuracy[k]);
+      if (!drawn) continue;
+      alt += fmt::format(" {} {};", report.classes[k],
+                         share_with_interval(drawn->share, drawn->interval));
     }
   }
   return alt;
 }
 
-/// The paper's name for an image of its Fig. 6.
+/// The name of an image in Fig. 6 of the paper.
 std::string paper_image(std::size_t i) {
   return fmt::format("image {}", i + 1);
 }
@@ -94,8 +96,8 @@ std::string plain_name(std::string_view label) {
   return plain;
 }
 
-/// The marks of the paper's values. A value stands beside the class that has its image's name, or
-/// otherwise in a column of its own.
+/// The marks of the paper's values: beside the class with the image's name, otherwise in a separate
+/// column.
 std::vector<Datum> paper_rows(std::span<const std::string> classes) {
   std::vector<Datum> rows;
   const auto column = static_cast<double>(classes.size()) + 1.0;
@@ -115,29 +117,30 @@ std::string alt_of_accuracy(const StudyReport& report) {
   std::string alt = "Accuracy by class, with 95% " + interval_name(report) + ":";
   const MethodReport& method = report.methods.front();
   for (std::size_t i = 0; i < method.accuracy.size(); ++i) {
-    const ClassAccuracy& at = method.accuracy[i];
-    const auto drawn = drawn_accuracy(at);
+    const ClassAccuracy& accuracy = method.accuracy[i];
+    const auto drawn = drawn_accuracy(accuracy);
     if (!drawn) continue;
     alt += fmt::format(" {} {}, {} of {};", report.classes[i],
-                       with_interval(drawn->share, drawn->interval), at.accuracy.correct,
-                       at.accuracy.n);
+                       share_with_interval(drawn->share, drawn->interval),
+                       accuracy.accuracy.correct, accuracy.accuracy.n);
   }
-  return alt + fmt::format(" chance {:.1f} %.", 100.0 / static_cast<double>(report.classes.size()));
+  return alt + fmt::format(" chance {:.1f}%.", 100.0 / static_cast<double>(report.classes.size()));
 }
 
 }  // namespace
 
 std::optional<Figure> methods_figure(const StudyReport& report) {
-  const bool any = std::any_of(report.methods.begin(), report.methods.end(),
-                               [](const MethodReport& m) { return m.overall.n > 0; });
-  if (report.methods.size() < 2 || !any) return {};
+  const bool has_trials = std::any_of(report.methods.begin(), report.methods.end(),
+                                      [](const MethodReport& m) { return m.overall.n > 0; });
+  if (report.methods.size() < 2 || !has_trials) return {};
   const std::size_t means = report.methods.size() * report.classes.size();
-  Figure figure = figure_named("methods", "methods-compared", report.simulated,
-                               means > kMeansOfColumn ? kPage_cm : kColumn_cm);
+  Figure figure = empty_figure("methods", "methods-compared", report.simulated,
+                               means > kMaxMeansInColumn ? kPage_cm : kColumn_cm);
   Panel panel;
   panel.x = names_axis(report.classes);
   panel.y = percent_axis("correct, %");
   panel.layers = {chance_rule(static_cast<int>(report.classes.size()))};
+  put_label_outside(panel);
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
     panel.layers.push_back(class_layer(report, i));
     panel.layers.back().in_key = true;
@@ -154,12 +157,13 @@ std::optional<Figure> accuracy_figure(const StudyReport& report, bool paper_valu
   if (report.methods.size() != 1) return {};
   Layer accuracy = class_layer(report, 0);
   if (accuracy.rows.empty()) return {};
-  Figure figure = figure_named("accuracy-by-class", "accuracy", report.simulated,
-                               report.classes.size() > kMeansOfColumn ? kPage_cm : kColumn_cm);
+  Figure figure = empty_figure("accuracy-by-class", "accuracy", report.simulated,
+                               report.classes.size() > kMaxMeansInColumn ? kPage_cm : kColumn_cm);
   Panel panel;
   panel.x = names_axis(report.classes);
   panel.y = percent_axis("correct, %");
   panel.layers = {chance_rule(static_cast<int>(report.classes.size()))};
+  put_label_outside(panel);
   for (const Datum& row : accuracy.rows) {
     panel.layers.push_back(
         direct_label(row.x, row.y, fmt::format("{:.0f}", row.y), std::string(kInk)));
@@ -172,10 +176,10 @@ std::optional<Figure> accuracy_figure(const StudyReport& report, bool paper_valu
                 .size = 1.6,
                 .glyph = Glyph::ring,
                 .in_key = true};
-    const bool apart = std::ranges::any_of(paper.rows, [&](const Datum& row) {
+    const bool is_separate = std::ranges::any_of(paper.rows, [&](const Datum& row) {
       return row.x > static_cast<double>(report.classes.size()) + 0.5;
     });
-    if (apart) panel.x.names.emplace_back("(paper)");
+    if (is_separate) panel.x.names.emplace_back("(paper)");
     panel.layers.push_back(std::move(paper));
   }
   figure.panels = {std::move(panel)};
@@ -185,8 +189,7 @@ std::optional<Figure> accuracy_figure(const StudyReport& report, bool paper_valu
                                                  ". Trials without a response are wrong.");
   if (paper_values) {
     figure.caption +=
-        " Open marks: accuracies published for five images, which are other images felt on another "
-        "device.";
+        " Open marks: published accuracies of five other images, felt on another device.";
   }
   return figure;
 }

@@ -8,22 +8,21 @@
 #include <fmt/format.h>
 
 namespace touchtrial::analysis::identification {
-
 namespace {
 
 /// Adds participants' accuracies as dots.
-void add_accuracies(Layer& dots, double at, const std::vector<double>& accuracy,
+void add_accuracies(Layer& dots, double x, const std::vector<double>& accuracy,
                     const std::vector<std::string>& participants) {
-  std::vector<OwnValue> own;
+  std::vector<ParticipantValue> values;
   for (std::size_t i = 0; i < accuracy.size(); ++i) {
-    own.push_back({100.0 * accuracy[i], i < participants.size() ? participants[i] : ""});
+    values.push_back({100.0 * accuracy[i], i < participants.size() ? participants[i] : ""});
   }
-  swarm(dots.rows, at - 0.1, 0.55, 1.5, std::move(own));
+  swarm(dots.rows, x - 0.1, 0.55, 1.5, std::move(values));
 }
 
-void add_mean(Layer& means, double at, const MeanEstimate& mean) {
+void add_mean(Layer& means, double x, const MeanEstimate& mean) {
   if (mean.mean) {
-    means.rows.push_back(bar(at + 0.28, *mean.mean, mean.known_interval(), 100.0));
+    means.rows.push_back(bar(x + 0.28, *mean.mean, mean.known_interval(), 100.0));
   }
 }
 
@@ -32,11 +31,12 @@ std::string alt_of_cues(const MethodCues& method) {
   for (const ObserverFigures& observer : method.observers) {
     if (!observer.mean.mean) continue;
     alt += fmt::format(" {} {};", title_of(observer.cue),
-                       with_interval(*observer.mean.mean, observer.mean.known_interval()));
+                       share_with_interval(*observer.mean.mean, observer.mean.known_interval()));
   }
   if (method.human_mean.mean) {
-    alt += fmt::format(" participants {}.",
-                       with_interval(*method.human_mean.mean, method.human_mean.known_interval()));
+    alt += fmt::format(
+        " participants {}.",
+        share_with_interval(*method.human_mean.mean, method.human_mean.known_interval()));
   }
   return alt;
 }
@@ -52,29 +52,29 @@ Panel cues_panel(const CueReport& cues, const MethodCues& method) {
       .kind = LayerKind::interval, .name = "participants", .colour = series_colour(1), .size = 1.1};
   Panel panel;
   panel.x = names_axis({"rms", "spectrum", "everything", "people"});
-  double at = 1.0;
+  double x = 1.0;
   for (const ObserverFigures& observer : method.observers) {
-    add_accuracies(dots, at, observer.accuracy, method.participants);
-    add_mean(observers, at, observer.mean);
-    at += 1.0;
+    add_accuracies(dots, x, observer.accuracy, method.participants);
+    add_mean(observers, x, observer.mean);
+    x += 1.0;
   }
-  add_accuracies(dots, at, method.human_accuracy, method.participants);
-  add_mean(people, at, method.human_mean);
+  add_accuracies(dots, x, method.human_accuracy, method.participants);
+  add_mean(people, x, method.human_mean);
   panel.y = percent_axis("correct, %");
   panel.layers = {chance_rule(static_cast<int>(cues.classes.size())), std::move(dots),
                   std::move(observers), std::move(people)};
   return panel;
 }
 
-/// The most grey values along the texture's longer side. More would be too fine for print and would
-/// make the script large.
+/// The maximum along the texture's longer side. More would be too fine for print and make the
+/// script large.
 constexpr int kMaxPixels = 250;
 constexpr double kWidth_cm = 9.5;
 constexpr double kArrows = 14.0;  ///< along a path
-/// A shorter way would hide below its arrow's head; in lengths of the plane's longer side.
-constexpr double kMinStrokeShare = 0.02;
+/// Share of the plane's longer side; a shorter arrow would be hidden by its head.
+constexpr double kMinArrowShare = 0.02;
 
-/// Every n-th grey value of the texture, brightened, so that the path stands out.
+/// Every n-th grey value of the texture, brightened so that the path is visible.
 GreyImage backdrop(const GreyImage& grey) {
   const int step =
       std::max(1, (std::max(grey.width(), grey.height()) + kMaxPixels - 1) / kMaxPixels);
@@ -104,8 +104,8 @@ Layer path_layer(const std::vector<PathPoint>& points) {
   return layer;
 }
 
-/// Arrows onwards in time, evenly along the path's rows.
-Layer arrows_on(const Layer& path, double longer_mm) {
+/// Arrows in the direction of time, evenly along the path's rows.
+Layer arrows_along(const Layer& path, double longer_mm) {
   Layer arrows{.kind = LayerKind::arrow, .name = "direction of time", .size = 1.0};
   const auto step = std::max<std::size_t>(
       1, static_cast<std::size_t>(static_cast<double>(path.rows.size()) / kArrows));
@@ -113,7 +113,7 @@ Layer arrows_on(const Layer& path, double longer_mm) {
     const Datum& from = path.rows[i];
     for (std::size_t k = i + 1; k < path.rows.size() && path.rows[k].text == from.text; ++k) {
       const Datum& to = path.rows[k];
-      if (std::hypot(to.x - from.x, to.y - from.y) < kMinStrokeShare * longer_mm) continue;
+      if (std::hypot(to.x - from.x, to.y - from.y) < kMinArrowShare * longer_mm) continue;
       arrows.rows.push_back({.x = from.x, .y = from.y, .low = to.x, .high = to.y});
       break;
     }
@@ -121,7 +121,7 @@ Layer arrows_on(const Layer& path, double longer_mm) {
   return arrows;
 }
 
-double strongest(const std::vector<PathPoint>& points) {
+double max_force_n(const std::vector<PathPoint>& points) {
   double force_n = 0.0;
   for (const PathPoint& point : points) {
     if (point.in_contact) force_n = std::max(force_n, point.tangential_rms_n);
@@ -136,28 +136,26 @@ const PathPoint* first_contact(const std::vector<PathPoint>& points) {
 }
 
 std::string caption_of(const ExplorationPath& path) {
-  const std::string who =
+  const std::string trial =
       path.participant.empty()
           ? "a trial of one participant"
           : fmt::format("by {}, session {}, trial {}", path.participant, path.session, path.trial);
   std::string caption = fmt::format(
-      "exploration of {} ({}), {}. Colour is the tangential force, rms "
-      "until the next point; the circle is first contact, arrows point onwards in time; where the "
-      "hand was off the plane nothing is drawn.",
-      path.class_label, path.method, who);
+      "exploration of {} ({}), {}. Colour is the tangential force, rms until the next point; the "
+      "circle is the first contact; arrows show the direction of time; only contact is drawn.",
+      path.class_label, path.method, trial);
   if (!path.texture.grey.empty())
-    caption += " Beneath it, brightened: " + path.texture.source + ".";
+    caption += " Background, brightened: " + path.texture.source + ".";
   return stamped(path.simulated, caption);
 }
 
 }  // namespace
 
 std::optional<Figure> cues_figure(const CueReport& cues) {
-  Figure figure = figure_named("ideal-observers", "cues", cues.simulated);
-  figure.across = 2;
+  Figure figure = empty_figure("ideal-observers", "cues", cues.simulated);
+  figure.panels_per_row = 2;
   figure.alt =
-      "Accuracy of ideal observers that feel what the participants felt, beside the participants', "
-      "with 95% intervals:";
+      "Accuracy of ideal observers and of participants in the same trials, with 95% intervals:";
   for (const MethodCues& method : cues.methods) {
     if (method.observers.empty()) continue;
     figure.panels.push_back(cues_panel(cues, method));
@@ -172,22 +170,21 @@ std::optional<Figure> cues_figure(const CueReport& cues) {
   }
   figure.caption = stamped(
       cues.simulated,
-      "what was there to feel, and what participants made of it. Ideal observers (squares) judge "
-      "each participant's own traces by force strength alone (rms), by the spectrum's shape alone, "
-      "or by everything felt; means with 95% t intervals over participants, and each "
-      "participant.");
+      "available information, and participants' accuracy. Ideal observers (squares) judge each "
+      "participant's traces by force strength only (rms), by the spectrum's shape only, or by "
+      "everything felt; means with 95% t intervals over participants, and each participant.");
   return figure;
 }
 
 Figure path_figure(const ExplorationPath& path) {
   const PlaneGeometry& geometry = path.texture.geometry;
   const double longer_mm = std::max({geometry.width_mm(), geometry.height_mm(), 1e-6});
-  Figure figure = figure_named(fmt::format("exploration-{}-{}", path.session, path.trial),
+  Figure figure = empty_figure(fmt::format("exploration-{}-{}", path.session, path.trial),
                                kExplorations, path.simulated, kWidth_cm);
   figure.caption = caption_of(path);
   figure.alt = fmt::format(
       "Path of the hand over {} in {:.1f} s; strongest tangential force {:.2f} N; answered {}.",
-      path.class_label, path.duration_s, strongest(path.points),
+      path.class_label, path.duration_s, max_force_n(path.points),
       path.answered_right ? "right" : "wrong");
   Panel panel;
   panel.x = {.label = "mm", .low = 0.0, .high = std::max(geometry.width_mm(), 1e-6)};
@@ -195,7 +192,7 @@ Figure path_figure(const ExplorationPath& path) {
       .label = "mm", .low = 0.0, .high = std::max(geometry.height_mm(), 1e-6), .reversed = true};
   panel.aspect = std::clamp(geometry.height_mm() / std::max(geometry.width_mm(), 1e-6), 0.2, 5.0);
   panel.colour_scale = "tangential force, N";
-  panel.strongest = strongest(path.points);
+  panel.scale_max = max_force_n(path.points);
   if (!path.texture.grey.empty()) {
     panel.layers.push_back(
         {.kind = LayerKind::picture,
@@ -204,7 +201,7 @@ Figure path_figure(const ExplorationPath& path) {
          .grey = backdrop(path.texture.grey)});
   }
   panel.layers.push_back(path_layer(path.points));
-  panel.layers.push_back(arrows_on(panel.layers.back(), longer_mm));
+  panel.layers.push_back(arrows_along(panel.layers.back(), longer_mm));
   if (const PathPoint* start = first_contact(path.points)) {
     panel.layers.push_back({.name = "first contact",
                             .rows = {{.x = start->position_mm.x, .y = start->position_mm.y}},

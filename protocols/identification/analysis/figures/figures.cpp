@@ -11,26 +11,25 @@
 namespace touchtrial::analysis::identification {
 namespace {
 
-/// With more classes a matrix takes the page's whole width.
-constexpr std::size_t kClassesOfColumn = 6;
+/// A matrix of more classes takes the whole width of the page.
+constexpr std::size_t kMaxClassesInColumn = 6;
 
 bool has_confusions(const StudyReport& report, const MethodReport& method) {
   return method.confusion.classes() == static_cast<int>(report.classes.size()) &&
          method.confusion.accuracy().n > 0;
 }
 
-Datum tile_of(int column, int row, int count, int whole) {
-  const double share = whole > 0 ? static_cast<double>(count) / whole : 0.0;
+Datum tile_of(int column, int row, int count, int total) {
+  const double share = total > 0 ? static_cast<double>(count) / total : 0.0;
   return {.x = column + 1.0,
           .y = row + 1.0,
           .low = static_cast<double>(count),
-          .high = static_cast<double>(whole),
+          .high = static_cast<double>(total),
           .value = share,
           .text = fmt::format("{:.0f}", 100.0 * share)};
 }
 
-/// Rows are the presented class, columns the answers, and trials without a response if there are
-/// some.
+/// Rows are presented classes, columns answers, the last one for trials without a response, if any.
 Panel confusion_panel(const StudyReport& report, const MethodReport& method) {
   const ConfusionMatrix& confusion = method.confusion;
   const int classes = confusion.classes();
@@ -38,12 +37,12 @@ Panel confusion_panel(const StudyReport& report, const MethodReport& method) {
   for (int row = 0; row < classes; ++row) all_answered &= confusion.no_response(row) == 0;
   Layer tiles{.kind = LayerKind::tile, .name = "per cent of the row"};
   for (int row = 0; row < classes; ++row) {
-    const int whole = confusion.presented(row);
+    const int total = confusion.presented(row);
     for (int column = 0; column < classes; ++column) {
-      tiles.rows.push_back(tile_of(column, row, confusion.count(row, column), whole));
+      tiles.rows.push_back(tile_of(column, row, confusion.count(row, column), total));
     }
     if (!all_answered) {
-      tiles.rows.push_back(tile_of(classes, row, confusion.no_response(row), whole));
+      tiles.rows.push_back(tile_of(classes, row, confusion.no_response(row), total));
     }
   }
   std::vector<std::string> answers = report.classes;
@@ -69,15 +68,15 @@ std::string alt_of_confusions(const StudyReport& report, const MethodReport& met
   return alt;
 }
 
-/// Each participant's accuracy beside the mean.
+/// Participants' accuracies and the mean.
 Panel accuracies_panel(const StudyReport& report, const MethodReport& method) {
   Layer dots{.name = "participants", .colour = series_colour(0)};
-  std::vector<OwnValue> own;
-  for (const ParticipantAccuracy& one : method.per_participant) {
-    const std::optional<double> share = one.accuracy.share();
-    if (share) own.push_back({100.0 * *share, one.participant});
+  std::vector<ParticipantValue> values;
+  for (const ParticipantAccuracy& participant : method.per_participant) {
+    const std::optional<double> share = participant.accuracy.share();
+    if (share) values.push_back({100.0 * *share, participant.participant});
   }
-  swarm(dots.rows, 1.0, 1.0, 1.5, own);
+  swarm(dots.rows, 1.0, 1.0, 1.5, values);
   Layer mean{.kind = LayerKind::interval, .name = "mean", .size = 1.4, .glyph = Glyph::diamond};
   Panel panel;
   panel.height_cm = 0.0;
@@ -89,7 +88,7 @@ Panel accuracies_panel(const StudyReport& report, const MethodReport& method) {
   mean.rows = {bar(1.75, *method.mean.mean, method.mean.known_interval(), 100.0)};
   panel.layers.push_back(std::move(mean));
   panel.layers.push_back(direct_label(1.8, 100.0 * *method.mean.mean,
-                                      fmt::format("{:.0f} %", 100.0 * *method.mean.mean),
+                                      fmt::format("{:.0f}%", 100.0 * *method.mean.mean),
                                       std::string(kInk)));
   return panel;
 }
@@ -99,9 +98,9 @@ Panel accuracies_panel(const StudyReport& report, const MethodReport& method) {
 std::optional<Figure> confusion_and_accuracy_figure(const StudyReport& report) {
   if (report.methods.size() != 1 || !has_confusions(report, report.methods.front())) return {};
   const MethodReport& method = report.methods.front();
-  Figure figure = figure_named("confusion-and-accuracy", "result", report.simulated,
-                               report.classes.size() > kClassesOfColumn ? kPage_cm : 13.0);
-  figure.across = 2;
+  Figure figure = empty_figure("confusion-and-accuracy", "result", report.simulated,
+                               report.classes.size() > kMaxClassesInColumn ? kPage_cm : 13.0);
+  figure.panels_per_row = 2;
   figure.panels = {confusion_panel(report, method), accuracies_panel(report, method)};
   figure.caption = stamped(
       report.simulated,
@@ -110,20 +109,20 @@ std::optional<Figure> confusion_and_accuracy_figure(const StudyReport& report) {
   figure.alt = alt_of_confusions(report, method);
   if (method.mean.mean) {
     figure.alt += fmt::format(" Accuracy of {} participants: mean {}.", method.mean.participants,
-                              with_interval(*method.mean.mean, method.mean.known_interval()));
+                              share_with_interval(*method.mean.mean, method.mean.known_interval()));
   }
   return figure;
 }
 
 std::optional<Figure> confusions_figure(const StudyReport& report) {
-  std::vector<const MethodReport*> shown;
+  std::vector<const MethodReport*> methods;
   for (const MethodReport& method : report.methods) {
-    if (has_confusions(report, method)) shown.push_back(&method);
+    if (has_confusions(report, method)) methods.push_back(&method);
   }
-  if (report.methods.size() < 2 || shown.empty()) return {};
-  Figure figure = figure_named("confusions", "confusions", report.simulated, kPage_cm);
-  figure.across = report.classes.size() > kClassesOfColumn ? 1 : 2;
-  for (const MethodReport* method : shown) {
+  if (report.methods.size() < 2 || methods.empty()) return {};
+  Figure figure = empty_figure("confusions", "confusions", report.simulated, kPage_cm);
+  figure.panels_per_row = report.classes.size() > kMaxClassesInColumn ? 1 : 2;
+  for (const MethodReport* method : methods) {
     Panel panel = confusion_panel(report, *method);
     panel.title = method->method;
     figure.panels.push_back(std::move(panel));

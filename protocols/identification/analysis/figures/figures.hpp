@@ -1,4 +1,4 @@
-/// \file The figures of a study's report.
+/// \file Figures of identification reports.
 #pragma once
 
 #include "analysis/report/figures/figure.hpp"
@@ -13,27 +13,27 @@
 
 namespace touchtrial::analysis::identification {
 
-/// The subheading of the pictures of explorations.
+/// The id of the subheading above pictures of explorations.
 inline constexpr const char* kExplorations = "explorations";
 
 struct FigureOptions {
-  /// Shows the source paper's accuracies as open marks. They belong to other images and another
-  /// device, so they have a column of their own unless a class has the name of the paper's image.
+  /// Shows the source paper's accuracies as open marks. They are of other images and another
+  /// device, so they have a separate column unless a class has the name of the paper's image.
   bool paper_values = false;
   const CueReport* cues = nullptr;                  ///< not owned; null: no ideal observers
-  std::span<const ExplorationPath> explorations{};  ///< one figure for each, drawn last
-  std::string stamp{};  ///< on every figure besides SIMULATED, for instance "INTERIM LOOK"
+  std::span<const ExplorationPath> explorations{};  ///< one figure each, drawn last
+  std::string stamp{};  ///< on every figure in addition to SIMULATED, such as "INTERIM LOOK"
 };
 
-/// The figures that have something to show, in the order of a results section; a study without
-/// counted trials has hardly any. No figure is drawn yet. Cost:
-/// milliseconds. Thread-safe.
+/// All figures with data, in the order of a results section, not yet drawn. Cost: milliseconds.
+/// Thread-safe.
 [[nodiscard]] std::vector<Figure> report_figures(const StudyReport& report,
                                                  const FigureOptions& options = {});
 
-/// The following have nothing to return if they have nothing to show.
+/// \name Single figures, or nothing without data
+/// \{
 
-/// The answers to each class beside participants' accuracies, for a report with one method.
+/// The answers to each class, and participants' accuracies, for a report with one method.
 [[nodiscard]] std::optional<Figure> confusion_and_accuracy_figure(const StudyReport& report);
 /// Each participant's accuracy from method to method, the mean, and the differences of pairs, for a
 /// report with several methods.
@@ -48,9 +48,11 @@ struct FigureOptions {
 [[nodiscard]] std::optional<Figure> trials_figure(const StudyReport& report);
 /// Reaction times by class.
 [[nodiscard]] std::optional<Figure> reaction_figure(const StudyReport& report);
-/// Accuracies of ideal observers beside those of participants.
+/// Accuracies of ideal observers and of participants.
 [[nodiscard]] std::optional<Figure> cues_figure(const CueReport& cues);
 /// The path of one trial over its texture, coloured by force, with arrows in the direction of time.
 [[nodiscard]] Figure path_figure(const ExplorationPath& path);
+
+/// \}
 
 }  // namespace touchtrial::analysis::identification

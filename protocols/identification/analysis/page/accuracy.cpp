@@ -11,58 +11,57 @@
 #include <fmt/format.h>
 
 namespace touchtrial::analysis::identification {
-
 namespace {
 
 Table class_table(const StudyReport& report, std::size_t index) {
   const MethodReport& method = report.methods[index];
-  std::vector<std::size_t> places(method.accuracy.size() + 1);
-  std::iota(places.begin(), places.end(), 0U);
+  std::vector<std::size_t> rows(method.accuracy.size() + 1);
+  std::iota(rows.begin(), rows.end(), 0U);
   return method_table(report, index, "accuracy-by-class", "right answers by the texture presented",
-                      places, accuracy_measures(report, method));
+                      rows, accuracy_measures(report, method));
 }
 
-/// Every participant's accuracies, a column for each method.
+/// Accuracies by participant and method.
 Table participant_table(const StudyReport& report) {
   Table table{"accuracy-by-participant", "Right answers by participant",
               columns_of({"participant"})};
   std::map<std::string, std::size_t> row_of;
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
     table.columns.push_back({report.methods[i].method});
-    for (const ParticipantAccuracy& one : report.methods[i].per_participant) {
-      const auto [found, is_new] = row_of.emplace(one.participant, table.rows.size());
+    for (const ParticipantAccuracy& participant : report.methods[i].per_participant) {
+      const auto [entry, is_new] = row_of.emplace(participant.participant, table.rows.size());
       if (is_new) {
         table.rows.emplace_back(std::vector<Cell>(report.methods.size() + 1, kNoFigure));
-        table.rows.back().front() = one.participant;
+        table.rows.back().front() = participant.participant;
       }
-      table.rows[found->second][i + 1] = count_and_share(one.accuracy);
+      table.rows[entry->second][i + 1] = count_and_share(participant.accuracy);
     }
   }
   return table;
 }
 
-/// A participant with a method.
+/// Possibly swapped labels of a participant with a method.
 struct Swap {
   const MethodReport* method;
   const ParticipantAccuracy* participant;
 };
 
-/// Those whose labels may have been swapped.
 std::optional<Table> swaps_table(const StudyReport& report) {
   std::vector<Swap> swaps;
   for (const MethodReport& method : report.methods) {
-    for (const ParticipantAccuracy& one : method.per_participant) {
-      if (one.swap_adjusted <= kUsualLevel) swaps.push_back({&method, &one});
+    for (const ParticipantAccuracy& participant : method.per_participant) {
+      if (participant.swap_p_adjusted <= kUsualLevel) swaps.push_back({&method, &participant});
     }
   }
   if (swaps.empty()) return {};
   MeasureList<Swap> measures = measures_in<Swap>(&Swap::participant, participant_measures(report));
-  measures.insert(measures.begin() + 1,
-                  label_of<Swap>("", "method", [](const Swap& one) { return one.method->method; }));
+  measures.insert(measures.begin() + 1, label_of<Swap>("", "method", [](const Swap& swap) {
+                    return swap.method->method;
+                  }));
   return table_of("label-swaps", "Participants who may have swapped labels", swaps, measures);
 }
 
-/// How often each answer was given, whatever was presented.
+/// How often each answer was given, over all textures.
 std::vector<Cell> marginal_row(const ConfusionMatrix& confusion) {
   std::vector<Cell> row{"all answers"};
   const int n = confusion.accuracy().n;
@@ -93,23 +92,23 @@ Section accuracy_section(const StudyReport& report) {
                   "Accuracy",
                   {table_of("headline", "Right answers, mean over participants", report.methods,
                             headline_measures(report))}};
-  const bool is_one = report.methods.size() == 1;
+  const bool has_one_method = report.methods.size() == 1;
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
-    // Of several methods a table compares them by texture.
-    (is_one ? section.blocks : section.more).emplace_back(class_table(report, i));
+    // Another table compares several methods by texture.
+    (has_one_method ? section.blocks : section.folded_blocks).emplace_back(class_table(report, i));
   }
   if (auto swaps = swaps_table(report)) section.blocks.emplace_back(std::move(*swaps));
-  section.more.emplace_back(table_of(
-      "ability", "Whether at least one participant performs above chance, and how many would",
+  section.folded_blocks.emplace_back(table_of(
+      "ability", "Participants above chance: whether there is one, and how many would pass a test",
       report.methods, ability_measures()));
-  section.more.emplace_back(participant_table(report));
+  section.folded_blocks.emplace_back(participant_table(report));
   return section;
 }
 
-Section confusions_section(const StudyReport& report, bool drawn) {
+Section confusions_section(const StudyReport& report, bool has_figure) {
   Section section{"confusions", "Confusions", {}};
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
-    (drawn ? section.more : section.blocks).emplace_back(confusion_table(report, i));
+    (has_figure ? section.folded_blocks : section.blocks).emplace_back(confusion_table(report, i));
   }
   return section;
 }

@@ -13,9 +13,11 @@ namespace {
 Table pair_table(const StudyReport& report) {
   Table table = table_of("methods", "Methods compared within participants", report.pairs,
                          pair_measures(report));
-  const auto decides = [&](const MethodPair& pair) { return pair.overall.p == report.primary->p; };
-  if (report.primary && std::ranges::none_of(report.pairs, decides)) {
-    table.notes.push_back({"The primary test is another one; see \"Result\"."});
+  const auto is_primary = [&](const MethodPair& pair) {
+    return pair.overall.p == report.primary->p;
+  };
+  if (report.primary && std::ranges::none_of(report.pairs, is_primary)) {
+    table.notes.push_back({"The primary test is a different one; see \"Result\"."});
   }
   return table;
 }
@@ -24,20 +26,19 @@ Table class_table(const StudyReport& report, const MethodPair& pair, std::size_t
   std::vector<std::size_t> classes(pair.classes.size());
   std::iota(classes.begin(), classes.end(), 0U);
   return table_of("methods-by-class-" + std::to_string(index + 1),
-                  report.methods[pair.first].method + " beside " +
-                      report.methods[pair.second].method + ", by texture",
+                  report.methods[pair.first].method + " and " + report.methods[pair.second].method +
+                      ", by texture",
                   classes, class_measures(report, pair));
 }
 
-Cited together_of(const MethodsTogether& together) {
+CitedText overall_sentence(const AllMethodsTest& test) {
   std::string text = fmt::format(
       "All methods together: Cochran's Q = {} on {} degrees of freedom, {} under chi-square, which "
       "treats trials as independent",
-      plain_figure(together.cochran.q, 2), together.cochran.degrees_of_freedom,
-      p_phrase(together.cochran.p));
-  if (together.permuted_p) {
-    text += fmt::format("; {} with methods permuted within participants",
-                        p_phrase(*together.permuted_p));
+      plain_figure(test.cochran.q, 2), test.cochran.degrees_of_freedom, p_phrase(test.cochran.p));
+  if (test.permuted_p) {
+    text +=
+        fmt::format("; {} with methods permuted within participants", p_phrase(*test.permuted_p));
   }
   return {text + ".", {Source::cochran, Source::phipson_smyth}};
 }
@@ -47,11 +48,12 @@ Cited together_of(const MethodsTogether& together) {
 Section comparison_section(const StudyReport& report) {
   Section section{"methods-compared", "Comparison of methods", {}};
   if (report.pairs.empty()) return section;
-  if (report.together) section.blocks.emplace_back(together_of(*report.together));
+  if (report.all_methods) section.blocks.emplace_back(overall_sentence(*report.all_methods));
   section.blocks.emplace_back(pair_table(report));
   for (std::size_t i = 0; i < report.pairs.size(); ++i) {
     if (report.pairs[i].classes.empty()) continue;
-    (i == 0 ? section.blocks : section.more).emplace_back(class_table(report, report.pairs[i], i));
+    (i == 0 ? section.blocks : section.folded_blocks)
+        .emplace_back(class_table(report, report.pairs[i], i));
   }
   return section;
 }

@@ -8,31 +8,28 @@
 #include <fmt/format.h>
 
 namespace touchtrial::analysis::identification {
-
 namespace {
 
-/// The accuracies of the ideal observers, which show how much information there was to
-/// feel.
+/// The accuracies of the ideal observers show the available information.
 Table cue_table(const StudyReport& report, const MethodCues& method, std::size_t index) {
-  Table table = table_of(
-      "cues-" + std::to_string(index + 1),
-      method_prefix(report, index) + "accuracy of ideal observers that feel what hands felt",
-      method.observers, efficiency_measures());
+  Table table =
+      table_of("cues-" + std::to_string(index + 1),
+               method_prefix(report, index) + "accuracy of ideal observers from the same traces",
+               method.observers, efficiency_measures());
   table.rows.insert(table.rows.begin(),
                     {"(participants)", Cell(share_figure(method.human_mean.mean), true),
                      share_range(method.human_mean.known_interval()), "", "", "", ""});
   table.notes.insert(
       table.notes.begin(),
-      {fmt::format("{} of {}. An observer judges each trial by the other trials, without knowing "
+      {fmt::format("{} of {}. An observer judges each trial from the other trials, without knowing "
                    "the answers. Accuracy: mean over participants with Student's t interval; – if "
-                   "all have the same.",
+                   "all are equal.",
                    counted(method.trials, "trial"),
                    counted(static_cast<std::int64_t>(method.participants.size()), "participant")),
        {Source::student}});
   return table;
 }
 
-/// How similar observers' confusions are to participants'.
 Table divergence_table(const StudyReport& report, const MethodCues& method, std::size_t index) {
   Table table = table_of(
       "cues-confusing-" + std::to_string(index + 1),
@@ -46,7 +43,7 @@ Table divergence_table(const StudyReport& report, const MethodCues& method, std:
   return table;
 }
 
-bool reaches(const MethodCues& method, Cue cue) {
+bool can_match_accuracy(const MethodCues& method, Cue cue) {
   const auto found = std::ranges::find(method.observers, cue, &ObserverFigures::cue);
   return found == method.observers.end() || found->is_as_uncertain();
 }
@@ -54,11 +51,11 @@ bool reaches(const MethodCues& method, Cue cue) {
 std::string verdict_of(const MethodCues& method, const CueMatch& match) {
   const auto participants = static_cast<std::int64_t>(method.participants.size());
   if (participants < kMinForVerdict) {
-    return fmt::format("with {} whether the two differ is undecided",
+    return fmt::format("with {}, it is undecided whether the two differ",
                        counted(participants, "participant"));
   }
   if (!match.difference.interval) {
-    return "without an interval whether the two differ is undecided";
+    return "without an interval, it is undecided whether the two differ";
   }
   const std::string interval = "95% interval " + plain_range(match.difference.interval, 3);
   if (match.difference.interval->low <= 0.0) {
@@ -67,25 +64,24 @@ std::string verdict_of(const MethodCues& method, const CueMatch& match) {
   return interval + (match.is_distinct ? ", so the two differ" : "");
 }
 
-Cited match_of(const MethodCues& method) {
+CitedText match_sentence(const MethodCues& method) {
   if (!method.match) {
     return {method.method + ": too few answers to compare confusions with observers'."};
   }
   const CueMatch& match = *method.match;
-  const std::string beginning =
+  const std::string conditions =
       std::ranges::all_of(method.observers, &ObserverFigures::is_as_uncertain)
           ? "with all observers as accurate as participants, participants' confusions are most like"
-          : "with observers as near to participants' accuracy as noise can bring them, "
-            "participants' confusions are most like";
+          : "with observers as close to participants' accuracy as noise permits, participants' "
+            "confusions are most like";
   std::string text = fmt::format(
       "{}: {} those of the observer of {} ({} bit less matched divergence than {}; {}).",
-      method.method, beginning, title_of(match.best), plain_figure(match.difference.value, 3),
+      method.method, conditions, title_of(match.best), plain_figure(match.difference.value, 3),
       title_of(match.second), verdict_of(method, match));
-  if (!reaches(method, match.best)) {
+  if (!can_match_accuracy(method, match.best)) {
     text +=
         " No noise makes this observer as accurate as participants, so this does not show that "
-        "they "
-        "used this cue alone.";
+        "they used only this cue.";
   }
   return {text, {Source::lin}};
 }
@@ -93,27 +89,28 @@ Cited match_of(const MethodCues& method) {
 void add_observers(const StudyReport& report, const CueReport& cues, Section& section) {
   for (std::size_t i = 0; i < cues.methods.size(); ++i) {
     const MethodCues& method = cues.methods[i];
-    if (method.observers.empty()) continue;  // a warning says so
-    section.more.emplace_back(match_of(method));
-    section.more.emplace_back(cue_table(report, method, i));
-    section.more.emplace_back(divergence_table(report, method, i));
+    if (method.observers.empty()) continue;  // there is a warning
+    section.folded_blocks.emplace_back(match_sentence(method));
+    section.folded_blocks.emplace_back(cue_table(report, method, i));
+    section.folded_blocks.emplace_back(divergence_table(report, method, i));
   }
-  if (!cues.warnings.empty()) section.more.emplace_back(Warnings{cues.warnings});
+  if (!cues.warnings.empty()) section.folded_blocks.emplace_back(Warnings{cues.warnings});
 }
 
 }  // namespace
 
-Section cues_section(const StudyReport& report, bool explores) {
+Section cues_section(const StudyReport& report, bool has_explorations) {
   Section section{"cues", "Ideal observers of cues", {}};
   if (report.cues) {
     add_observers(report, *report.cues, section);
   } else {
-    section.more.emplace_back(
-        Cited{"Not examined: ideal observers read every trace of the study. Ask for it with "
-              "touchtrial report DB --out DIR --cues yes.",
-              {}});
+    section.folded_blocks.emplace_back(CitedText{
+        "Not examined: ideal observers read every trace of the study. To include them, run "
+        "touchtrial report DB --out DIR --cues yes.",
+        {}});
   }
-  if (explores) section.more.emplace_back(Subheading{kExplorations, "How a hand explored"});
+  if (has_explorations)
+    section.folded_blocks.emplace_back(Subheading{kExplorations, "Examples of exploration"});
   return section;
 }
 

@@ -12,15 +12,15 @@ namespace {
 Table places_table(const choices::AnswersByPlace& places) {
   Table table = table_of("answers-by-place", "Answers by the picture's place on the screen",
                          places.places, place_measures(places));
-  const bool alike = std::ranges::any_of(
-      places.places, [](const choices::PlaceUse& one) { return one.excess.alike; });
+  const bool has_equal_values = std::ranges::any_of(
+      places.places, [](const choices::PlaceUse& place) { return place.excess.all_equal; });
   table.notes = {
-      {fmt::format("Difference: mean over participants of the share of answers less {}, in "
+      {fmt::format("Difference: mean over participants of the share of answers minus {}, in "
                    "percentage points, with Student's t interval and p{}. All places together: {}, "
                    "by {} permutations of layouts, because every participant has a different order "
                    "of pictures.",
                    share_figure(1.0 / static_cast<double>(places.places.size())),
-                   alike ? " (by sign flips where all participants are alike)" : "",
+                   has_equal_values ? " (by sign flips if all participants are equal)" : "",
                    p_phrase(places.p), places.deals),
        {Source::student, Source::phipson_smyth}}};
   return table;
@@ -31,9 +31,10 @@ Table places_table(const choices::AnswersByPlace& places) {
 Section places_section(const StudyReport& report) {
   Section section{"places", "Answers by place", {}};
   if (!report.places) return section;
-  const bool found = report.places->own.anybody.found() || report.places->p <= kUsualLevel;
-  std::vector<Block>& blocks = found ? section.blocks : section.more;
-  blocks = {Cited{choices::preferences_sentence(report.places->own, report.classes)},
+  const bool has_preferences =
+      report.places->preferences.global_null.found() || report.places->p <= kUsualLevel;
+  std::vector<Block>& blocks = has_preferences ? section.blocks : section.folded_blocks;
+  blocks = {CitedText{choices::preferences_sentence(report.places->preferences, report.classes)},
             places_table(*report.places)};
   return section;
 }

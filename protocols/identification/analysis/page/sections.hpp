@@ -1,4 +1,4 @@
-/// \file The page of an identification study and its sections, as its results use them.
+/// \file The page of an identification study and its sections.
 #pragma once
 
 #include "analysis/report/page/document.hpp"
@@ -14,42 +14,41 @@
 
 namespace touchtrial::analysis::identification {
 
-/// The sentences above the figure of the result, after the verdict.
+/// The sentences between the verdict and the figure of the result.
 [[nodiscard]] Section result_section(const StudyReport& report);
 [[nodiscard]] Section accuracy_section(const StudyReport& report);
-/// \param drawn  whether a figure shows the confusions, so that their tables are folded
-[[nodiscard]] Section confusions_section(const StudyReport& report, bool drawn);
-/// Answers by their places on the screen, and who prefers a picture: folded unless somebody does.
+/// \param has_figure  folds the tables
+[[nodiscard]] Section confusions_section(const StudyReport& report, bool has_figure);
+/// Answers by place on the screen, and preferences for pictures; folded unless there are
+/// preferences.
 /// \return a section without blocks if no answer has a place
 [[nodiscard]] Section places_section(const StudyReport& report);
-/// The comparison of two or more methods.
 /// \return a section without blocks if there is one method
 [[nodiscard]] Section comparison_section(const StudyReport& report);
 [[nodiscard]] Section order_section(const StudyReport& report);
 /// Accuracies by visit and by group.
 /// \return a section without blocks if the study has one visit and no groups
 [[nodiscard]] Section visits_section(const StudyReport& report);
-/// How sure participants were.
-/// \return a section without blocks if they were not asked
+/// \return a section without blocks if the study does not ask for confidence
 [[nodiscard]] Section confidence_section(const StudyReport& report);
 [[nodiscard]] Section times_section(const StudyReport& report);
-/// Folded.
-/// \param explores  whether there are pictures of explorations, which stand at its end
-[[nodiscard]] Section cues_section(const StudyReport& report, bool explores = false);
-/// The servo and the validity of trials, and the results with and without invalid trials.
+/// Ideal observers, as a folded section.
+/// \param has_explorations  whether pictures of explorations follow at the end
+[[nodiscard]] Section cues_section(const StudyReport& report, bool has_explorations = false);
+/// Servo timing, and results for other selections of trials.
 [[nodiscard]] Section robustness_section(const StudyReport& report);
 
 /// Adds a subheading with the method's name if the report has several methods.
-/// \param section  its id begins the id of the heading
+/// \param section  its id is the prefix of the heading's id
 void add_method_heading(const StudyReport& report, std::size_t method, Section& section);
-/// Which method a table is of, if the report has several.
+/// The id and caption of a table, with the name of the method if the report has several.
 struct TableName {
   std::string id;
   std::string caption;
 };
 [[nodiscard]] TableName method_table_name(const StudyReport& report, std::size_t method,
                                           const std::string& id, const std::string& caption);
-/// The table of a list of measures, with that name.
+/// A table of measures with method_table_name.
 template <typename Row>
 [[nodiscard]] Table method_table(const StudyReport& report, std::size_t method,
                                  const std::string& id, const std::string& caption,
@@ -57,12 +56,10 @@ template <typename Row>
   TableName name = method_table_name(report, method, id, caption);
   return table_of(std::move(name.id), std::move(name.caption), rows, measures);
 }
-/// The beginning of captions: for example "adaptive: " if the report has several methods, otherwise
-/// empty.
+/// The beginning of captions: "adaptive: " if the report has several methods, otherwise empty.
 [[nodiscard]] std::string method_prefix(const StudyReport& report, std::size_t method);
 
-/// The report after unblinding.
-/// \param pictures  in the order in which they appear
+/// \param pictures  in their order on the page
 [[nodiscard]] Document study_document(const StudyReport& report, const Provenance& provenance,
                                       const Pictures& pictures = {});
 

@@ -12,20 +12,19 @@ namespace touchtrial::analysis::identification {
 namespace {
 
 Table breakdown_table(const StudyReport& report, std::size_t index, const Breakdown& breakdown) {
-  const char* which = breakdown.kind == BreakdownKind::exemplar ? ": which picture of a texture"
-                      : breakdown.kind == BreakdownKind::order_group
-                          ? ": in which order methods came"
-                          : "";
+  const char* explanation = breakdown.kind == BreakdownKind::exemplar ? ": picture of a texture"
+                            : breakdown.kind == BreakdownKind::order_group ? ": order of methods"
+                                                                           : "";
   std::string kind = name_of(breakdown.kind);
   const std::string id = "accuracy-by-" + slug_of(kind);
   std::ranges::replace(kind, '_', ' ');
-  return method_table(report, index, id, "right answers by " + kind + which, breakdown.groups,
+  return method_table(report, index, id, "right answers by " + kind + explanation, breakdown.groups,
                       breakdown_measures(breakdown.kind));
 }
 
-std::vector<Cell> dependence_row(const char* what, const SerialDependence& found) {
-  return {what, fmt::format("{} of {}", found.same, found.wrong), kNoFigure,
-          plain_figure(found.expected, 1), p_figure(found.p)};
+std::vector<Cell> dependence_row(const char* question, const SerialDependence& dependence) {
+  return {question, fmt::format("{} of {}", dependence.same, dependence.wrong), kNoFigure,
+          plain_figure(dependence.expected, 1), p_figure(dependence.p)};
 }
 
 /// A slope in percentage points per ten trials.
@@ -43,22 +42,23 @@ Table order_table(const StudyReport& report, std::size_t index, const OrderEffec
       {"learning: change of accuracy over ten trials (points)", slope_figure(order.slope.mean),
        interval ? share_range(Interval{10.0 * interval->low, 10.0 * interval->high}) : kNoFigure,
        "0.0", p_figure(order.slope_p)},
-      dependence_row("wrong answers that name the texture presented before", order.class_before),
-      dependence_row("wrong answers that repeat the answer before", order.answer_before)};
+      dependence_row("wrong answers that name the previous texture", order.class_before),
+      dependence_row("wrong answers that repeat the previous answer", order.answer_before)};
   table.notes = {
-      {fmt::format("p two-sided, of {} orders that the design could have produced, in which each "
-                   "answer keeps its presentation. More than at random: attraction to the previous "
-                   "trial; fewer: repulsion. The three tests are not adjusted.",
-                   order.draws),
+      {fmt::format(
+           "p: two-sided, from {} orders that the design could have produced, in which each answer "
+           "stays with its presentation. More than at random: attraction to the previous trial; "
+           "fewer: repulsion. The three tests are not adjusted.",
+           order.draws),
        {Source::phipson_smyth, Source::fischer_whitney}},
-      {"Learning: least squares within blocks, mean of participants' own slopes with Student's t "
+      {"Learning: least squares within blocks, mean slope over participants with Student's t "
        "interval.",
        {Source::student}}};
   return table;
 }
 
-Cited area_sentence(const StudyReport& report, std::size_t index,
-                    const ConfidenceReport& confidence) {
+CitedText area_sentence(const StudyReport& report, std::size_t index,
+                        const ConfidenceReport& confidence) {
   const MeanEstimate& area = confidence.area;
   if (!area.mean) {
     return {method_prefix(report, index) +
@@ -71,7 +71,7 @@ Cited area_sentence(const StudyReport& report, std::size_t index,
     text += ", 95% t interval " + plain_range(interval, 2);
   }
   text += fmt::format(
-      " (mean of the own areas of {}). It is the probability of higher confidence in a right "
+      " (mean over {}). It is the probability of higher confidence in a right "
       "answer than in a wrong one; .50 if confidence is uninformative.",
       counted(area.participants, "participant"));
   if (confidence.without_area > 0) {
@@ -90,11 +90,11 @@ Section order_section(const StudyReport& report) {
   Section section{"order", "Order and carry-over", {}};
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
     const MethodReport& method = report.methods[i];
-    if (method.order) section.more.emplace_back(order_table(report, i, *method.order));
-    for (const Breakdown& one : method.breakdowns) {
-      // A figure shows accuracy by trial; the table above tests it.
-      if (one.kind == BreakdownKind::trial || is_about_people(one.kind)) continue;
-      section.more.emplace_back(breakdown_table(report, i, one));
+    if (method.order) section.folded_blocks.emplace_back(order_table(report, i, *method.order));
+    for (const Breakdown& breakdown : method.breakdowns) {
+      // A figure shows accuracy by trial.
+      if (breakdown.kind == BreakdownKind::trial || is_between_people(breakdown.kind)) continue;
+      section.folded_blocks.emplace_back(breakdown_table(report, i, breakdown));
     }
   }
   return section;
@@ -103,12 +103,12 @@ Section order_section(const StudyReport& report) {
 Section visits_section(const StudyReport& report) {
   Section section{"visits-and-groups", "Visits and groups", {}};
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
-    bool first = true;
-    for (const Breakdown& one : report.methods[i].breakdowns) {
-      if (!is_about_people(one.kind)) continue;
-      if (first) add_method_heading(report, i, section);
-      first = false;
-      section.blocks.emplace_back(breakdown_table(report, i, one));
+    bool is_first = true;
+    for (const Breakdown& breakdown : report.methods[i].breakdowns) {
+      if (!is_between_people(breakdown.kind)) continue;
+      if (is_first) add_method_heading(report, i, section);
+      is_first = false;
+      section.blocks.emplace_back(breakdown_table(report, i, breakdown));
     }
   }
   return section;
@@ -128,37 +128,38 @@ Section confidence_section(const StudyReport& report) {
   return section;
 }
 
-/// A figure shows the times; "Accuracy" has their medians by texture.
+/// Contains only a note, because a figure shows the times and "Accuracy" has their medians by
+/// texture.
 Section times_section(const StudyReport& report) {
   Section section{"reaction-times", "Reaction times", {}};
   int paused = 0;
   for (const MethodReport& method : report.methods) {
-    if (!method.reaction.empty()) paused += method.reaction.back().paused;
+    if (!method.reaction_times.empty()) paused += method.reaction_times.back().paused;
   }
   if (std::ranges::all_of(report.methods, &std::vector<ReactionTimes>::empty,
-                          &MethodReport::reaction)) {
+                          &MethodReport::reaction_times)) {
     return section;
   }
-  section.more.emplace_back(Cited{fmt::format(
-      "Trials with a response, right or wrong, on the servo's clock: from the moment the plane can "
-      "be felt to the answer. {}, left out here, came after the end of a pause.",
-      counted(paused, "response"))});
+  section.folded_blocks.emplace_back(
+      CitedText{fmt::format("Trials with a response, right or wrong, on the servo's clock: from "
+                            "rendering of the plane to the answer. {} after a pause omitted.",
+                            counted(paused, "response"))});
   return section;
 }
 
 Section robustness_section(const StudyReport& report) {
   Section section{"servo-and-validity", "Servo and validity", {}};
   if (const auto servo = servo_table(report.collection)) {
-    section.more.emplace_back(*servo);
+    section.folded_blocks.emplace_back(*servo);
   } else {
-    section.more.emplace_back(
-        Cited{"No trial ran in real time. In virtual time every tick is on time by construction."});
+    section.folded_blocks.emplace_back(CitedText{
+        "No trial ran in real time. In virtual time every tick is on time by construction."});
   }
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
     if (report.methods[i].robustness.empty()) continue;
-    section.more.emplace_back(method_table(report, i, "with-and-without",
-                                           "mean accuracy with other selections of trials",
-                                           report.methods[i].robustness, subset_measures()));
+    section.folded_blocks.emplace_back(
+        method_table(report, i, "with-and-without", "mean accuracy with other selections of trials",
+                     report.methods[i].robustness, subset_measures()));
   }
   return section;
 }

@@ -11,60 +11,62 @@
 namespace touchtrial::analysis::threshold {
 namespace {
 
-Table control_table(const AgainstGuessing& control) {
+Table control_table(const GuessingTests& control) {
   std::vector<RightAnswers> rows = control.people;
   rows.push_back(control.pooled);
   return table_of("control-block", "Right answers with the hand off the device", rows,
                   right_measures(true));
 }
 
-/// A standard, and the mean without those who could hear.
-struct Without {
-  const StandardReport* all;
-  const CensoredMean* others;
+struct HearersRow {
+  const StandardReport* standard;
+  const CensoredMean* without_hearers;
 };
 
-Table without_table(const ThresholdReport& report) {
-  using Row = Without;
+Table hearers_table(const ThresholdReport& report) {
+  using Row = HearersRow;
   std::vector<Row> rows;
-  for (std::size_t i = 0; i < report.control->without.size(); ++i) {
-    rows.push_back({&report.standards[i], &report.control->without[i]});
+  for (std::size_t i = 0; i < report.control->without_hearers.size(); ++i) {
+    rows.push_back({&report.standards[i], &report.control->without_hearers[i]});
   }
   const auto threshold = [](const CensoredMean& mean, const Row& row) {
-    return threshold_text(mean_threshold(mean), row.all->levels);
+    return threshold_text(mean_threshold(mean), row.standard->levels);
   };
   return table_of(
       "thresholds-without-hearers",
       "Thresholds without those who could hear, means over participants", rows,
-      {column_of<Row>("standard", [](const Row& one) { return one.all->words; }),
-       count_of<Row>("", "n", [](const Row& one) { return one.all->mean.participants; }),
-       column_of<Row>("all (dB)", [=](const Row& one) { return threshold(one.all->mean, one); }),
-       count_of<Row>("", "n, without", [](const Row& one) { return one.others->participants; }),
-       column_of<Row>("without (dB)", [=](const Row& one) { return threshold(*one.others, one); })
-           .with(fmt::format("Excluded here: {}. The result includes them.",
-                             listed(report.control->hearers, " and ")))});
+      {column_of<Row>("standard", [](const Row& row) { return row.standard->words; }),
+       count_of<Row>("", "n", [](const Row& row) { return row.standard->mean.participants; }),
+       column_of<Row>("all (dB)",
+                      [=](const Row& row) { return threshold(row.standard->mean, row); }),
+       count_of<Row>("", "n, without",
+                     [](const Row& row) { return row.without_hearers->participants; }),
+       column_of<Row>("without (dB)",
+                      [=](const Row& row) { return threshold(*row.without_hearers, row); })
+           .with_note(fmt::format("Excluded here: {}. The result includes them.",
+                                  listed(report.control->hearers, " and ")))});
 }
 
-/// What the control block could have found.
 std::string detectable_words(const SoundReport& control) {
-  const choices::Detectable& one = control.detectable;
+  const choices::DetectableAccuracy& detectable = control.detectable;
   const std::string people =
       counted(static_cast<std::int64_t>(control.people.size()), "participant");
-  if (!one.share) {
-    return fmt::format(" {} are too few to detect anybody among {}.", counted(one.trials, "trial"),
-                       people);
+  if (!detectable.share) {
+    return fmt::format(" {} are too few to detect a hearing participant among {}.",
+                       counted(detectable.trials, "trial"), people);
   }
   return fmt::format(
       " Among {}, a participant with {} right in {} would be detected with a probability of {}; "
       "weaker hearing may go undetected.",
-      people, share_figure(one.share), counted(one.trials, "trial"), choices::kFoundWith);
+      people, share_figure(detectable.share), counted(detectable.trials, "trial"),
+      choices::kDetectionPower);
 }
 
 /// "; without them bark: −20.1 [−22.0, −18.2] dB (9 participants)"
-std::string without_words(const ThresholdReport& report) {
+std::string without_hearers_words(const ThresholdReport& report) {
   std::vector<std::string> all;
-  for (std::size_t i = 0; i < report.control->without.size(); ++i) {
-    const CensoredMean& mean = report.control->without[i];
+  for (std::size_t i = 0; i < report.control->without_hearers.size(); ++i) {
+    const CensoredMean& mean = report.control->without_hearers[i];
     if (!mean.mean) continue;
     const StandardReport& standard = report.standards[i];
     all.push_back(fmt::format("{}: {} dB ({})", standard.words,
@@ -82,22 +84,21 @@ std::string control_meaning(const ThresholdReport& report) {
       share_figure(report.guess));
 }
 
-/// By which test a p over participants is.
-std::string test_words(bool alike) {
+std::string test_words(bool has_equal_values) {
   return std::string("p by Student's t over participants") +
-         (alike ? ", by sign flips where all of them are alike." : ".");
+         (has_equal_values ? ", by sign flips if all of them are equal." : ".");
 }
 
 Table choices_table(const ThresholdReport& report) {
-  Table table =
-      table_of("named-choices", "Frequency of each answer, and of it being right; trials of tracks",
-               report.choice_use, choice_measures());
-  const bool alike =
-      std::ranges::any_of(report.choice_use, [](const ChoiceUse& one) { return one.excess.alike; });
+  Table table = table_of("named-choices",
+                         "Frequency of each answer, and how often it was right; trials of tracks",
+                         report.choice_use, choice_measures());
+  const bool has_equal_values = std::ranges::any_of(
+      report.choice_use, [](const ChoiceUse& use) { return use.excess.all_equal; });
   table.notes = {
-      {"Difference: mean over participants of the share given less the share right, in "
+      {"Difference: mean over participants of the share given minus the share right, in "
        "percentage points; " +
-           test_words(alike),
+           test_words(has_equal_values),
        {Source::student}}};
   return table;
 }
@@ -120,13 +121,13 @@ std::string learning_sentence(const ThresholdReport& report) {
 }  // namespace
 
 bool was_heard(const ThresholdReport& report) {
-  return report.control && report.control->anybody.found();
+  return report.control && report.control->global_null.found();
 }
 
 std::string sound_sentence(const ThresholdReport& report) {
   if (!report.control) {
-    return "There was no control block with the hand off the device: whether the textures could be "
-           "heard is not known.";
+    return "There was no control block with the hand off the device, so it is unknown whether the "
+           "textures could be heard.";
   }
   const SoundReport& control = *report.control;
   const RightAnswers& pooled = control.pooled;
@@ -134,32 +135,30 @@ std::string sound_sentence(const ThresholdReport& report) {
       "With the hand off the device {} of {} answers were right ({} {}; guessing gives {})",
       pooled.answers.correct, pooled.answers.n, share_figure(pooled.answers.share()),
       share_range(pooled.interval), share_figure(report.guess));
-  const std::string p = p_phrase(control.anybody.p);
-  if (!control.anybody.found()) {
+  const std::string p = p_phrase(control.global_null.p);
+  if (!control.global_null.found()) {
     return fmt::format("{}: no evidence that any participant could hear it ({}).{}", counts, p,
                        detectable_words(control));
   }
   if (control.hearers.empty()) {
     return fmt::format(
         "{}: more than by guessing ({}), though no single participant stands out. Participants "
-        "could "
-        "hear something, and every threshold may reflect hearing.",
+        "could hear something, and every threshold may reflect hearing.",
         counts, p);
   }
   return fmt::format(
       "{}. Some participants could hear it ({}): {}. Their thresholds may reflect hearing{}.",
-      counts, p, hearers_words(control), without_words(report));
+      counts, p, hearers_words(control), without_hearers_words(report));
 }
 
 Section control_section(const ThresholdReport& report) {
   Section section{"control", "Sound and attention", {}};
   if (report.tracks.empty()) return section;
-  // What could be heard stands in the result.
-  if (!was_heard(report)) section.blocks.emplace_back(Cited{sound_sentence(report)});
+  if (!was_heard(report)) section.blocks.emplace_back(CitedText{sound_sentence(report)});
   if (report.control) {
-    section.more.emplace_back(Cited{control_meaning(report)});
-    section.more.emplace_back(control_table(*report.control));
-    if (!report.control->hearers.empty()) section.blocks.emplace_back(without_table(report));
+    section.folded_blocks.emplace_back(CitedText{control_meaning(report)});
+    section.folded_blocks.emplace_back(control_table(*report.control));
+    if (!report.control->hearers.empty()) section.blocks.emplace_back(hearers_table(report));
   }
   return section;
 }
@@ -167,12 +166,12 @@ Section control_section(const ThresholdReport& report) {
 Section habits_section(const ThresholdReport& report) {
   Section section{"habits", "Response bias and learning", {}};
   if (report.tracks.empty()) return section;
-  const auto add = [&](Block block) { section.more.emplace_back(std::move(block)); };
+  const auto add = [&](Block block) { section.folded_blocks.emplace_back(std::move(block)); };
   const std::string learning = learning_sentence(report);
-  if (!learning.empty()) add(Cited{learning});
+  if (!learning.empty()) add(CitedText{learning});
   add(choices_table(report));
   if (!report.preferences.people.empty()) {
-    add(Cited{choices::preferences_sentence(report.preferences, report.choices)});
+    add(CitedText{choices::preferences_sentence(report.preferences, report.choices)});
   }
   return section;
 }

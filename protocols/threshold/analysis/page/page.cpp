@@ -1,9 +1,11 @@
 #include "analysis/report/page/wording.hpp"
+#include "core/named.hpp"
 #include "core/text.hpp"
 #include "protocols/threshold/analysis/measures.hpp"
 #include "protocols/threshold/analysis/page/sections.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -13,79 +15,71 @@ namespace touchtrial::analysis::threshold {
 namespace {
 
 using procedures::Censored;
-using study::threshold::Along;
+using study::threshold::LevelQuantity;
 using study::threshold::Question;
 using study::threshold::Task;
 using study::threshold::ThresholdOptions;
 
-std::string question_words(const ThresholdOptions& options) {
+std::string answer_words(const ThresholdOptions& options) {
   switch (options.question) {
     case Question::odd_one_out:
-      return "which of three planes was unlike the other two";
+      return "which of three planes differed from the other two";
     case Question::same_different:
-      return "whether two planes were alike";
+      return "whether two planes were the same";
     case Question::which_interval:
       break;
   }
-  const std::string which = fmt::format("which of {} planes ", options.intervals);
-  if (options.task == Task::detection) return which + "had the texture";
-  return which + (options.along == Along::pitch ? "was coarser" : "was stronger");
+  const std::string planes = fmt::format("which of {} planes ", options.intervals);
+  if (options.task == Task::detection) return planes + "had the texture";
+  return planes + (options.along == LevelQuantity::pitch ? "was coarser" : "was stronger");
 }
 
 std::string task_words(const ThresholdOptions& options) {
   if (options.task == Task::detection) return "the detection threshold of a texture";
-  switch (options.along) {
-    case Along::gain:
-      return "the discrimination threshold of strength";
-    case Along::pitch:
-      return "the discrimination threshold of pitch";
-    case Along::order:
-      return "the discrimination threshold of order";
-    case Along::blend:
-      return "the smallest share of a second texture that is felt";
-  }
-  return "";
+  static constexpr auto kWords = std::to_array<Named<LevelQuantity>>(
+      {{"the discrimination threshold of strength", LevelQuantity::gain},
+       {"the discrimination threshold of pitch", LevelQuantity::pitch},
+       {"the discrimination threshold of order", LevelQuantity::order},
+       {"the smallest share of a second texture that is felt", LevelQuantity::blend}});
+  return std::string(name_in(kWords, options.along));
 }
 
 std::string criterion_words(const ThresholdReport& report) {
   if (!report.criterion) return "";
   return fmt::format(
-      " A threshold is the level with {} right, of an observer without lapses who guesses {} "
+      " A threshold is the level with {} right for an observer without lapses whose guesses are {} "
       "right.",
       share_figure(report.criterion), share_figure(report.guess));
 }
 
-/// Empty if everybody's threshold is known.
-std::string censored_words(const StandardReport& one) {
-  const int known = one.number_of(Censored::no);
-  if (known == std::ssize(one.people)) return "";
-  const std::string taken = taken_words(one);
+/// The numbers of known and unknown thresholds; empty if all are known.
+std::string censored_note(const StandardReport& standard) {
+  const int known = standard.number_of(Censored::no);
+  if (known == std::ssize(standard.people)) return "";
+  const std::string undetermined = undetermined_words(standard);
   return fmt::format(
-      " Of {} {} {} a threshold inside the levels; {} above the highest, {} below the lowest, {} "
+      " Of {}, {} {} a threshold within the levels; {} above the highest, {} below the lowest, {} "
       "not determined.{}",
-      counted(std::ssize(one.people), "participant"), known, known == 1 ? "has" : "have",
-      one.number_of(Censored::above), one.number_of(Censored::below),
-      one.number_of(Censored::undetermined), taken.empty() ? "" : " " + taken + ".");
+      counted(std::ssize(standard.people), "participant"), known, known == 1 ? "has" : "have",
+      standard.number_of(Censored::above), standard.number_of(Censored::below),
+      standard.number_of(Censored::undetermined),
+      undetermined.empty() ? "" : " " + undetermined + ".");
 }
 
-std::string lack_words(Lack lack) {
-  switch (lack) {
-    case Lack::nothing:
-      break;
-    case Lack::values:
-      return "fewer than two thresholds are known";
-    case Lack::most:
-      return "more than half of the thresholds are not known";
-    case Lack::spread:
-      return "the known thresholds are all equal";
-  }
-  return "";
+std::string_view missing_reason_words(MissingReason reason) {
+  static constexpr auto kWords = std::to_array<Named<MissingReason>>(
+      {{"", MissingReason::nothing},
+       {"fewer than two thresholds are known", MissingReason::values},
+       {"more than half of the thresholds are unknown", MissingReason::most},
+       {"the known thresholds are all equal", MissingReason::spread}});
+  return name_in(kWords, reason);
 }
 
 std::string people_words(const CensoredMean& mean) {
   if (mean.participants == 1) return "of one participant";
   const std::string people = "mean of " + counted(mean.participants, "participant");
-  if (!mean.interval) return people + ", without an interval: " + lack_words(mean.lack);
+  if (!mean.interval)
+    return people + ", without an interval: " + std::string(missing_reason_words(mean.lack));
   const char* kind = mean.exact == mean.participants ? "t" : "likelihood";
   return fmt::format("{} with its 95% {} interval, standard deviation {}, median {}", people, kind,
                      plain_figure(mean.sd, 1), median_text(mean));
@@ -93,31 +87,33 @@ std::string people_words(const CensoredMean& mean) {
 
 std::string no_mean_words(const CensoredMean& mean) {
   const std::string median = median_text(mean);
-  return fmt::format("no mean, because {}.{}", lack_words(mean.lack),
+  return fmt::format("no mean, because {}.{}", missing_reason_words(mean.lack),
                      median.empty() ? "" : fmt::format(" Median: {} dB.", median));
 }
 
-std::string standard_sentence(const ThresholdReport& report, const StandardReport& one) {
-  if (one.tracks == 0) return one.words + ": no trials that count.";
-  if (!one.mean.mean) return one.words + ": " + no_mean_words(one.mean) + censored_words(one);
-  const procedures::Threshold mean = mean_threshold(one.mean);
-  std::string text = fmt::format("{}: {} dB, {}.", one.words, threshold_text(mean, one.levels),
-                                 people_words(one.mean));
+std::string standard_sentence(const ThresholdReport& report, const StandardReport& standard) {
+  if (standard.tracks == 0) return standard.words + ": no counted trials.";
+  if (!standard.mean.mean)
+    return standard.words + ": " + no_mean_words(standard.mean) + censored_note(standard);
+  const procedures::Threshold mean = mean_threshold(standard.mean);
+  std::string text =
+      fmt::format("{}: {} dB, {}.", standard.words, threshold_text(mean, standard.levels),
+                  people_words(standard.mean));
   const std::string quantity = quantity_name(report.options());
   if (!quantity.empty()) {
-    text +=
-        fmt::format(" {}: {}.", quantity,
-                    quantity_text(quantity_of(report.options(), one.of, mean), report.options()));
+    text += fmt::format(
+        " {}: {}.", quantity,
+        quantity_text(quantity_of(report.options(), standard.definition, mean), report.options()));
   }
-  return text + censored_words(one);
+  return text + censored_note(standard);
 }
 
-std::string difference_sentence(const SameDifferentGroup& one, const ThresholdReport& report) {
-  return fmt::format("{}, {} dB: d' {} {} by differencing, all answers of {} pooled.",
-                     report.standards[one.standard].words, plain_figure(one.level, 1),
-                     plain_figure(one.differencing.d_prime, 2),
-                     plain_range(one.differencing.interval, 2),
-                     counted(one.participants, "participant"));
+std::string d_prime_sentence(const SameDifferentGroup& group, const ThresholdReport& report) {
+  return fmt::format("{}, {} dB: d' {} {} by differencing, answers of {} pooled.",
+                     report.standards[group.standard].words, plain_figure(group.level, 1),
+                     plain_figure(group.differencing.d_prime, 2),
+                     plain_range(group.differencing.interval, 2),
+                     counted(group.participants, "participant"));
 }
 
 Table standards_table(const ThresholdReport& report) {
@@ -156,33 +152,35 @@ std::string undetermined_text(const procedures::Threshold& threshold) {
   return text;
 }
 
-std::optional<double> hundredfold(const std::optional<double>& share) {
+std::optional<double> percent_of(const std::optional<double>& share) {
   return share ? std::optional(100.0 * *share) : std::nullopt;
 }
 
 Section result_section(const ThresholdReport& report) {
   Section section{"result", "Result", {}};
   const ThresholdOptions& options = report.options();
-  const auto say = [&](std::string text) { section.blocks.emplace_back(Cited{std::move(text)}); };
+  const auto add = [&](std::string text) {
+    section.blocks.emplace_back(CitedText{std::move(text)});
+  };
   if (report.tracks.empty()) {
-    say("No trial counts, so there is no result.");
+    add("No trial counts, so there is no result.");
     return section;
   }
   if (report.has_thresholds()) {
-    // Beside a verdict they would repeat the table.
-    for (const StandardReport& one : report.standards) {
-      if (!report.primary) say(standard_sentence(report, one));
+    // With a verdict, these sentences would only repeat the table.
+    for (const StandardReport& standard : report.standards) {
+      if (!report.primary) add(standard_sentence(report, standard));
     }
   } else {
-    for (const SameDifferentGroup& one : report.same_different_groups) {
-      say(difference_sentence(one, report));
+    for (const SameDifferentGroup& group : report.same_different_groups) {
+      add(d_prime_sentence(group, report));
     }
   }
-  if (was_heard(report)) say(sound_sentence(report));
-  say(fmt::format("Measured: {}. Participants said {}.{}", task_words(options),
-                  question_words(options), criterion_words(report)));
+  if (was_heard(report)) add(sound_sentence(report));
+  add(fmt::format("Measured: {}. Participants answered {}.{}", task_words(options),
+                  answer_words(options), criterion_words(report)));
   if (report.without_answer > 0) {
-    say(fmt::format("Left out: {} without an answer.", counted(report.without_answer, "trial")));
+    add(fmt::format("Left out: {} without an answer.", counted(report.without_answer, "trial")));
   }
   return section;
 }
@@ -192,19 +190,19 @@ Section thresholds_section(const ThresholdReport& report) {
   if (!report.has_thresholds() || report.tracks.empty()) return section;
   section.blocks.emplace_back(standards_table(report));
   if (!report.differences.empty()) {
-    section.blocks.emplace_back(table_of(
-        "differences-of-standards",
-        "Differences of thresholds, first minus second, of participants with tracks of both",
-        report.differences, difference_measures(report)));
+    section.blocks.emplace_back(
+        table_of("differences-of-standards",
+                 "Differences of thresholds, first minus second, of participants with both",
+                 report.differences, difference_measures(report)));
   }
   return section;
 }
 
-/// A figure shows each person's threshold: the table is for those who need the numbers.
-Section tracks_section(const ThresholdReport& report, bool drawn) {
+/// \param has_figure  folds the table
+Section tracks_section(const ThresholdReport& report, bool has_figure) {
   Section section{"tracks-of-participants", "Tracks", {}};
   if (!report.has_thresholds() || report.tracks.empty()) return section;
-  (drawn ? section.more : section.blocks)
+  (has_figure ? section.folded_blocks : section.blocks)
       .emplace_back(table_of("tracks",
                              fmt::format("Every track: thresholds in {}",
                                          study::threshold::unit_of_level(report.options())),
@@ -214,30 +212,30 @@ Section tracks_section(const ThresholdReport& report, bool drawn) {
 
 }  // namespace
 
-std::string taken_words(const StandardReport& one) {
-  if (!one.mean.mean || one.number_of(Censored::undetermined) == 0) return "";
+std::string undetermined_words(const StandardReport& standard) {
+  if (!standard.mean.mean || standard.number_of(Censored::undetermined) == 0) return "";
   int values = 0;
   int sides = 0;
   int open = 0;
-  for (const PersonThreshold& person : one.thresholds) {
+  for (const PersonThreshold& person : standard.thresholds) {
     if (person.censored != Censored::undetermined) continue;
     ++(person.bounds.exact() ? values : person.bounds == Bounds{} ? open : sides);
   }
   return fmt::format(
-      "Of those not determined, the mean takes {} by the likeliest threshold and {} by the side on "
-      "which it lies; {} {} no share in it",
-      values, sides, open, open == 1 ? "has" : "have");
+      "Of those not determined, {} enter the mean by the likeliest threshold and {} as censored; "
+      "{} {} not enter it",
+      values, sides, open, open == 1 ? "does" : "do");
 }
 
 Document threshold_document(const ThresholdReport& report, const Provenance& provenance,
                             const Pictures& pictures) {
-  const bool drawn = std::ranges::any_of(pictures, [](const Picture& one) {
-    return one.id.starts_with("threshold") && !one.svg.empty();
+  const bool has_figure = std::ranges::any_of(pictures, [](const Picture& picture) {
+    return picture.id.starts_with("threshold") && !picture.svg.empty();
   });
   return framed_document(
       report, result_section(report),
-      {thresholds_section(report), same_different_section(report), tracks_section(report, drawn),
-       control_section(report), habits_section(report)},
+      {thresholds_section(report), same_different_section(report),
+       tracks_section(report, has_figure), control_section(report), habits_section(report)},
       provenance, pictures);
 }
 
@@ -261,26 +259,21 @@ std::string median_text(const CensoredMean& mean) {
 
 std::string quantity_text(const Quantity& quantity, const ThresholdOptions& options) {
   if (!quantity.value) return kNoFigure;
-  if (options.along == Along::order) {
+  if (options.along == LevelQuantity::order) {
     return plain_figure(quantity.value, 3) + interval_text(quantity.low, quantity.high, 3);
   }
   return share_figure(quantity.value) +
-         interval_text(hundredfold(quantity.low), hundredfold(quantity.high), 1);
+         interval_text(percent_of(quantity.low), percent_of(quantity.high), 1);
 }
 
 std::string quantity_name(const ThresholdOptions& options) {
   if (options.task == Task::detection) return "";
-  switch (options.along) {
-    case Along::gain:
-      return "Weber fraction";
-    case Along::pitch:
-      return "Weber fraction of the pitch";
-    case Along::order:
-      return "change of order";
-    case Along::blend:
-      return "share of the second texture";
-  }
-  return "";
+  static constexpr auto kNames =
+      std::to_array<Named<LevelQuantity>>({{"Weber fraction", LevelQuantity::gain},
+                                           {"Weber fraction of the pitch", LevelQuantity::pitch},
+                                           {"change of order", LevelQuantity::order},
+                                           {"share of the second texture", LevelQuantity::blend}});
+  return std::string(name_in(kNames, options.along));
 }
 
 }  // namespace touchtrial::analysis::threshold

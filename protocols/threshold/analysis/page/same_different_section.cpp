@@ -6,18 +6,18 @@ namespace {
 
 Table group_table(const ThresholdReport& report) {
   Table table =
-      table_of("d-prime-by-level", "d' of same or different, of all participants' answers pooled",
+      table_of("d-prime-by-level", "d' of same or different, all participants' answers pooled",
                report.same_different_groups, group_measures(report));
   table.notes = {
-      {"Differencing: the observer compares how far the two impressions are apart; to quote where "
-       "levels are mixed or gains roved. Independent: each impression is judged by itself, which "
+      {"Differencing: the observer judges the difference between the two impressions; quote it if "
+       "levels are mixed or gains roved. Independent: each impression is judged separately, which "
        "needs two fixed stimuli; its d' is smaller (Macmillan and Creelman 2005, chapter 9). Hits "
-       "are those of the level, false alarms those of all levels of the standard. Half an answer "
-       "stands for none and is taken from all. With fewer hits than false alarms d' is 0, which is "
-       "most likely."},
-      {"Bootstrap: expanded percentiles over draws of whole participants, from six on. There is no "
-       "mean of participants' own d': where d' is small it would be far too small, with any number "
-       "of trials that a session has.",
+       "are of the level, false alarms of all levels of the standard. Counts of none or all are "
+       "changed by half an answer. With fewer hits than false alarms d' is 0, its most likely "
+       "value."},
+      {"Bootstrap: expanded percentiles over participants, with at least six. There is no mean of "
+       "participants' d', which would be far too small for small d' with realistic numbers of "
+       "trials.",
        {Source::davison_hinkley, Source::hesterberg}}};
   return table;
 }

@@ -51,7 +51,7 @@ TEST_CASE("contrast is computed as WCAG 2.1 says") {
   CHECK(analysis::contrast(black, white) == Approx(21.0));
   CHECK(analysis::contrast(white, white) == Approx(1.0));
   CHECK(analysis::contrast({119, 119, 119}, white) == Approx(4.48).margin(0.005));
-  CHECK(analysis::hexadecimal({0, 62, 110}) == "#003e6e");
+  CHECK(analysis::hex_code({0, 62, 110}) == "#003e6e");
 }
 
 TEST_CASE("every cell of a confusion matrix is readable, whatever its share") {

@@ -54,7 +54,7 @@ std::string complaint_about(const std::string& script) {
   std::filesystem::permissions(program, std::filesystem::perms::owner_all);
   const Variable path("PATH", folder.path().string() + ":/usr/bin:/bin");
   const Figure figure{.id = "x", .caption = {}, .alt = {}};
-  return message_of<Error>([&] { return drawn(figure, FigureFormat::svg); });
+  return message_of<Error>([&] { return draw_figure(figure, FigureFormat::svg); });
 }
 
 }  // namespace

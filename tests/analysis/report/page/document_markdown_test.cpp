@@ -15,13 +15,13 @@ TEST_CASE("a document in Markdown has every block, escaped, with one list of ref
   Table table{.id = "t", .caption = "numbers", .columns = {{"name", Align::left}, {"n"}}};
   table.rows = {{"a|b", {"7", true}}};
   table.notes = {{"exact", {Source::clopper_pearson}}};
-  document.sections = {
-      {"one",
-       "Section",
-       {Cited{"as shown", {Source::student}}, Subheading{"sub", "Part"}, Warnings{{"take care"}},
-        Definitions{{{"word", "meaning"}}}, Flow{"f", "people", {{"12 came", {"2 left"}}}},
-        Picture{"p", "a picture", "dots", "<svg></svg>"}, Picture{"q", "another", "described", ""},
-        table}}};
+  document.sections = {{"one",
+                        "Section",
+                        {CitedText{"as shown", {Source::student}}, Subheading{"sub", "Part"},
+                         Warnings{{"take care"}}, Definitions{{{"word", "meaning"}}},
+                         Flow{"f", "people", {{"12 came", {"2 left"}}}},
+                         Picture{"p", "a picture", "dots", "<svg></svg>"},
+                         Picture{"q", "another", "described", ""}, table}}};
   document.colophon = "the end";
   const std::string text = document_markdown(document, "images");
   for (const char* part :

@@ -69,7 +69,7 @@ TEST_CASE("page: no line ends within a p") {
   Document document;
   document.sections = {{"s",
                         "S",
-                        {Cited{"Test: p < 0.001, n = 20; a=b."},
+                        {CitedText{"Test: p < 0.001, n = 20; a=b."},
                          Table{"t", "T", {{"x"}, {"p"}}, {{"row", "< 0.001"}}}}}};
   const std::string page = page_html(document);
   CHECK(faults_of_page(page) == std::vector<std::string>());
@@ -146,7 +146,7 @@ TEST_CASE("page: what is folded has numbers of its own, follows, and is left out
   CHECK(page.find("Table d") < page.find("Table c"));
   CHECK(references_of(document) ==
         std::vector{Source::student, Source::holm, Source::wilson, Source::wagner});
-  CHECK(references_in_print(document) == 2);
+  CHECK(printed_reference_count(document) == 2);
   CHECK(tables_of(document).size() == 4);
   const std::string text = document_text(document);
   CHECK_THAT(text, holds_text("Table a") && holds_text("Table d") && !holds_text("Table b") &&

@@ -30,8 +30,8 @@ TEST_CASE("report folder: holds page, results and every table in both forms") {
   CHECK(content_of(out / "results.json") == "{}\n");
   CHECK_THAT(content_of(out / "report.html"), holds_text("<h1>") && names("hand-made"));
   for (const Table* table : tables_of(document)) {
-    CHECK(is_there(out / "tables" / (table->id + ".md")));
-    CHECK(is_there(out / "tables" / (table->id + ".tex")));
+    CHECK(path_exists(out / "tables" / (table->id + ".md")));
+    CHECK(path_exists(out / "tables" / (table->id + ".tex")));
   }
 }
 
@@ -42,7 +42,7 @@ TEST_CASE("report folder: files of an earlier report are removed, files of other
   replace_file(out / "tables" / "mine.md", std::string_view("mine"));
   replace_file(out / "notes.txt", std::string_view("mine"));
   write_report_folder(out, {{"results.json", "2"}, {"tables/a.md", "y"}});
-  CHECK_FALSE(is_there(out / "tables" / "old.md"));
+  CHECK_FALSE(path_exists(out / "tables" / "old.md"));
   CHECK(content_of(out / "tables" / "a.md") == "y");
   CHECK(content_of(out / "tables" / "mine.md") == "mine");
   CHECK(content_of(out / "notes.txt") == "mine");
@@ -58,8 +58,8 @@ TEST_CASE("report folder: a manipulated list removes nothing outside") {
       out / "report-files.txt",
       std::string_view("results.json\ntables/../../precious.md\n../precious.md\nnotes.txt\n"));
   write_report_folder(out, {{"results.json", "2"}});
-  CHECK(is_there(folder.path() / "precious.md"));
-  CHECK(is_there(out / "notes.txt"));
+  CHECK(path_exists(folder.path() / "precious.md"));
+  CHECK(path_exists(out / "notes.txt"));
 }
 
 TEST_CASE(
@@ -84,7 +84,7 @@ TEST_CASE("report folder: refuses to write over a file that no report's list nam
     replace_file(out / path, std::string_view("mine"));
     CHECK_THROWS_AS(write_report_folder(out, {{"results.json", "1"}, {path, "ours"}}), FileError);
     CHECK(content_of(out / path) == "mine");
-    CHECK_FALSE(is_there(out / "results.json"));
+    CHECK_FALSE(path_exists(out / "results.json"));
   }
   CHECK_THROWS_AS(refuse_foreign_files(out), FileError);
 }

@@ -61,7 +61,7 @@ TEST_CASE("tables: a LaTeX table alone prints its references, all together print
 
 TEST_CASE("tables: all together hold the report's warnings") {
   const Document document = study_document(hand_made_report(), hand_made_provenance());
-  CHECK_THAT(document_markdown(tables_alone(document), ""),
+  CHECK_THAT(document_markdown(tables_only(document), ""),
              holds_text("- Intervals of a class pool all trials.\n"));
   CHECK_THAT(tables_latex(document), holds_text("\\item Intervals of a class pool all trials.\n"));
 }
@@ -79,7 +79,7 @@ TEST_CASE("tables: a long table may break across pages") {
 TEST_CASE("tables: all together hold every table, once") {
   const Document document = study_document(hand_made_report(kHostile), hand_made_provenance());
   const std::string latex = tables_latex(document);
-  const std::string markdown = document_markdown(tables_alone(document), "");
+  const std::string markdown = document_markdown(tables_only(document), "");
   for (const Table* table : tables_of(document)) {
     const std::string label = "\\label{tab:" + table->id + "}";
     const std::size_t at = latex.find(label);

@@ -35,7 +35,7 @@ double& component(Vec3& v, DeviceAxis axis) {
 class BringUpRig final : public AcceptanceBench, public AcceptancePerson {
  public:
   explicit BringUpRig(const DeviceModel& model)
-      : force_scale_(model.planted.force_sign_scale), rehearsal_(model) {}
+      : force_scale_(model.planted_faults.force_sign_scale), rehearsal_(model) {}
 
   bool feels = true;
   bool suspends = true;
@@ -91,7 +91,7 @@ class BringUpRig final : public AcceptanceBench, public AcceptancePerson {
   [[nodiscard]] std::string ask_observation(const std::string& question) override {
     count();
     if (question.find("ruler") != std::string::npos) return "20.5";
-    if (question.find("Towards which side") == std::string::npos) return "1";
+    if (question.find("In which direction") == std::string::npos) return "1";
     return std::to_string(feels ? side() : kNowhere);
   }
   void show(const std::string& /*result*/) override {}
@@ -173,7 +173,7 @@ TEST_CASE("a wrong sign of a force ends a bring-up after small pushes alone") {
   for (const DeviceAxis axis : kDeviceAxes) {
     CAPTURE(name_of(axis));
     DeviceModel model = device_model("falcon");
-    component(model.planted.force_sign_scale, axis) = -1.0;
+    component(model.planted_faults.force_sign_scale, axis) = -1.0;
     BringUpRig rig(model);
     const BringUp record = brought_up(rig);
     CHECK(record.ended == BringUpEnd::wrong_sign);
@@ -239,11 +239,11 @@ TEST_CASE("a bring-up interrupted at any moment keeps its results and names the 
 
 TEST_CASE("a device that is lost ends a bring-up as a fault") {
   DeviceModel model = device_model("falcon");
-  model.planted.lost_after_s = 40.0;
+  model.planted_faults.lost_after_s = 40.0;
   BringUpRig rig(model);
   const BringUp record = brought_up(rig);
   CHECK(record.ended == BringUpEnd::fault);
-  CHECK_FALSE(record.why.empty());
+  CHECK_FALSE(record.reason.empty());
   CHECK(record.find("noise_mm") != nullptr);
 }
 

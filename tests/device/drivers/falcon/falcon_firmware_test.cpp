@@ -68,11 +68,11 @@ std::string failure_of(FtdiTransport& transport) {
 TEST_CASE("firmware is loaded byte for byte and then runs") {
   FalconEmulator emulator;
   EmulatorTransport transport(emulator);
-  CHECK_FALSE(falcon_answers(transport));
+  CHECK_FALSE(probe_falcon(transport));
   load_falcon_firmware(transport, dummy_firmware());
   CHECK(emulator.image() == dummy_firmware());
   CHECK(emulator.firmware_runs());
-  CHECK(falcon_answers(transport));
+  CHECK(probe_falcon(transport));
   CHECK(emulator.complaints().empty());
 }
 
@@ -80,7 +80,7 @@ TEST_CASE("asking whether firmware is loaded does not reset a Falcon that has it
   FalconEmulator emulator({.firmware_runs = true, .homed = true});
   EmulatorTransport transport(emulator);
   set_up_running_falcon(transport);
-  CHECK(falcon_answers(transport));
+  CHECK(probe_falcon(transport));
   CHECK(emulator.all_homed());
   CHECK(emulator.loads() == 0);
   CHECK(emulator.motors() == std::array<std::int16_t, 3>{});

@@ -229,7 +229,7 @@ TEST_CASE("inverse3: without calibration or power the force stays zero") {
 TEST_CASE("inverse3: a service that falls silent is a lost link") {
   HaplyService service({"--silence-after", "50"});
   device::inverse3::Inverse3Options options = patient_options();
-  options.silence = std::chrono::milliseconds(50);
+  options.answer_timeout = std::chrono::milliseconds(50);
   Inverse3Device device(service.settings(), std::move(options));
   CHECK(fault_of(device) == DeviceFault::link_lost);
   CHECK(device.write({0.0, 1.0, 0.0}) == device::DeviceStatus::fault);

@@ -44,7 +44,7 @@ json new_inventory() {
 }
 
 TEST_CASE("an Inverse3's inventory gives place, status and configuration") {
-  const auto report = device::inverse3::report_in(new_inventory().dump());
+  const auto report = device::inverse3::parse_report(new_inventory().dump());
   CHECK(report.session_id == 7);
   REQUIRE(report.devices.size() == 1);
   const auto& device = report.devices[0];
@@ -71,11 +71,11 @@ TEST_CASE("an Inverse3 is usable if it has power and is calibrated, ready and st
     json inventory = new_inventory();
     inventory["inverse3"][0]["status"][key] = false;
     INFO(key);
-    CHECK_FALSE(device::inverse3::report_in(inventory.dump()).devices[0].status->is_usable());
+    CHECK_FALSE(device::inverse3::parse_report(inventory.dump()).devices[0].status->is_usable());
   }
   json inventory = new_inventory();
   inventory["inverse3"][0]["status"]["in_use"] = false;
-  CHECK(device::inverse3::report_in(inventory.dump()).devices[0].status->is_usable());
+  CHECK(device::inverse3::parse_report(inventory.dump()).devices[0].status->is_usable());
 }
 
 TEST_CASE("a frame of an Inverse3 that somebody has turned or scaled is no plain one") {
@@ -87,7 +87,7 @@ TEST_CASE("a frame of an Inverse3 that somebody has turned or scaled is no plain
     json inventory = new_inventory();
     inventory[json::json_pointer(place)] = value;
     INFO(place);
-    CHECK_FALSE(device::inverse3::report_in(inventory.dump()).devices[0].config->plain_frame);
+    CHECK_FALSE(device::inverse3::parse_report(inventory.dump()).devices[0].config->plain_frame);
   }
 }
 
@@ -95,7 +95,7 @@ TEST_CASE("the directional part of an Inverse3's damping counts too") {
   json inventory = new_inventory();
   inventory["inverse3"][0]["config"]["filters"]["damping"]["vector"] = {
       {"x", 0.0}, {"y", -1.5}, {"z", 0.0}};
-  CHECK(device::inverse3::report_in(inventory.dump()).devices[0].config->damping == 1.5);
+  CHECK(device::inverse3::parse_report(inventory.dump()).devices[0].config->damping == 1.5);
 }
 
 TEST_CASE("a state of an Inverse3 without configuration or force is whole") {
@@ -104,12 +104,12 @@ TEST_CASE("a state of an Inverse3 without configuration or force is whole") {
   state["inverse3"][0].erase("status");
   state["inverse3"][0]["state"].erase("current_cursor_force");
   state.erase("session_id");
-  const auto report = device::inverse3::report_in(state.dump());
+  const auto report = device::inverse3::parse_report(state.dump());
   CHECK_FALSE(report.session_id);
   CHECK_FALSE(report.devices[0].config);
   CHECK_FALSE(report.devices[0].status);
   CHECK_FALSE(report.devices[0].delivered_n);
-  CHECK(device::inverse3::report_in("{}").devices.empty());
+  CHECK(device::inverse3::parse_report("{}").devices.empty());
 }
 
 TEST_CASE("messages of an Inverse service that make no sense are refused") {
@@ -130,30 +130,33 @@ TEST_CASE("messages of an Inverse service that make no sense are refused") {
     json inventory = new_inventory();
     inventory[json::json_pointer(place)] = value;
     INFO(place);
-    CHECK_THROWS_AS(device::inverse3::report_in(inventory.dump()), BadMessage);
+    CHECK_THROWS_AS(device::inverse3::parse_report(inventory.dump()), BadMessage);
   }
   const std::string whole = new_inventory().dump();
   for (const std::string& text :
        {std::string(), std::string("7"), std::string("[]"), std::string("nonsense"),
         whole.substr(0, whole.size() / 2), std::string(100'000, '[')}) {
-    CHECK_THROWS_AS(device::inverse3::report_in(text), BadMessage);
+    CHECK_THROWS_AS(device::inverse3::parse_report(text), BadMessage);
   }
   // What is nested deeply, and of no concern, exhausts nothing.
   json deep = new_inventory();
   std::string nested = deep.dump();
   nested.insert(1, "\"more\": " + std::string(200'000, '[') + std::string(200'000, ']') + ", ");
-  CHECK(device::inverse3::report_in(nested).devices.size() == 1);
-  CHECK(device::inverse3::report_in(R"({"ok": true, "data": )" + nested + "}").devices.size() == 1);
+  CHECK(device::inverse3::parse_report(nested).devices.size() == 1);
+  CHECK(device::inverse3::parse_report(R"({"ok": true, "data": )" + nested + "}").devices.size() ==
+        1);
   // Not JSON, though some programs write it.
   std::string infinite = whole;
   infinite.replace(infinite.find("1.5"), 3, "Infinity");
-  CHECK_THROWS_AS(device::inverse3::report_in(infinite), BadMessage);
+  CHECK_THROWS_AS(device::inverse3::parse_report(infinite), BadMessage);
   infinite.replace(infinite.find("Infinity"), 8, "1e999");
-  CHECK_THROWS_AS(device::inverse3::report_in(infinite), BadMessage);
+  CHECK_THROWS_AS(device::inverse3::parse_report(infinite), BadMessage);
 }
 
 TEST_CASE("buttons of a grip beside an Inverse3 are bits, and odd grips have none") {
-  const auto buttons = [](const char* grips) { return device::inverse3::report_in(grips).buttons; };
+  const auto buttons = [](const char* grips) {
+    return device::inverse3::parse_report(grips).buttons;
+  };
   CHECK(buttons(R"({"wireless_verse_grip": [{"state": {"buttons": {"a": true, "c": true}}}]})") ==
         5);
   CHECK(buttons(R"({"verse_grip": [{"state": {"button": true}}]})") == 1);
@@ -162,39 +165,39 @@ TEST_CASE("buttons of a grip beside an Inverse3 are bits, and odd grips have non
 }
 
 TEST_CASE("the version of an Inverse service is read with and without an envelope") {
-  const auto version = device::inverse3::version_in(
+  const auto version = device::inverse3::parse_version(
       R"({"git_tag": "3.5.0", "project_version": "3.5.1.0", "project_name": "x"})");
   CHECK(version.text() == "3.5");
   CHECK(version.has_filters());
-  CHECK(device::inverse3::version_in(R"({"ok": true, "data": {"git_tag": "3.1.1"}})").text() ==
+  CHECK(device::inverse3::parse_version(R"({"ok": true, "data": {"git_tag": "3.1.1"}})").text() ==
         "3.1");
   CHECK_FALSE(kOld.has_filters());
-  CHECK(kOld.is_known());
-  CHECK_FALSE(ServiceVersion{3, 0}.is_known());
-  CHECK_FALSE(ServiceVersion{4, 0}.is_known());
+  CHECK(kOld.is_supported());
+  CHECK_FALSE(ServiceVersion{3, 0}.is_supported());
+  CHECK_FALSE(ServiceVersion{4, 0}.is_supported());
   for (const char* const text : {R"({"project_version": "main"})", R"({"project_version": "3"})",
                                  R"({"project_version": "3.x"})", "{}", "3.5"}) {
-    CHECK_THROWS_AS(device::inverse3::version_in(text), BadMessage);
+    CHECK_THROWS_AS(device::inverse3::parse_version(text), BadMessage);
   }
 }
 
 TEST_CASE("sessions of an Inverse service are counted and named") {
-  const auto names = device::inverse3::sessions_in(
+  const auto names = device::inverse3::parse_sessions(
       R"({"ok": true, "data": {"session_count": 2,
           "sessions": [{"session_id": 7, "profile": {"name": "touchtrial"}}, {"session_id": 3}]}})");
   CHECK(names == std::vector<std::string>{"touchtrial", ""});
-  CHECK_THROWS_AS(device::inverse3::sessions_in(R"({"ok": false, "error": "no"})"), BadMessage);
+  CHECK_THROWS_AS(device::inverse3::parse_sessions(R"({"ok": false, "error": "no"})"), BadMessage);
 }
 
 TEST_CASE("an event of an Inverse service names the event and the device") {
-  const auto event = device::inverse3::event_in(
+  const auto event = device::inverse3::parse_event(
       R"({"name": "device-safety-triggered", "category": "device", "level": "error",
           "data": {"device_family": "inverse", "device_id": "049D",
                    "safety_type": "ebrake_triggered"}, "message": "brake"})");
   CHECK(event.name == "device-safety-triggered");
   CHECK(event.safety_type == "ebrake_triggered");
   CHECK(event.device_id == "049D");
-  CHECK_THROWS_AS(device::inverse3::event_in("{}"), BadMessage);
+  CHECK_THROWS_AS(device::inverse3::parse_event("{}"), BadMessage);
 }
 
 TEST_CASE("a force for an Inverse3 is a vector from version 3.5 on, and values before") {

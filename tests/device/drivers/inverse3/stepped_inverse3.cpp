@@ -30,7 +30,7 @@ device::inverse3::Inverse3Options patient_options(std::shared_ptr<TestTime> time
   device::inverse3::Inverse3Options options;
   options.pace = std::make_unique<TestPace>(std::move(time));
   options.scheduling = {device::SchedulingPolicy::other, 0, false};
-  options.timeout = options.silence = std::chrono::minutes(5);
+  options.timeout = options.answer_timeout = std::chrono::minutes(5);
   return options;
 }
 

@@ -160,7 +160,7 @@ TEST_CASE("a plug-in's text without an end ends where its room does") {
 TEST_CASE("what a plug-in reports or gets wrong latches as a fault, and the force is zero") {
   using device::DeviceFault;
   using device::plugin::PluginFault;
-  const auto [name, fault, trouble] = GENERATE(table<const char*, DeviceFault, PluginFault>(
+  const auto [name, fault, plugin_fault] = GENERATE(table<const char*, DeviceFault, PluginFault>(
       {{"staying", DeviceFault::link_lost, PluginFault::lost},
        {"warm", DeviceFault::warm_motors, PluginFault::warm_motors},
        {"unknown_code", DeviceFault::driver, PluginFault::failed},
@@ -177,7 +177,7 @@ TEST_CASE("what a plug-in reports or gets wrong latches as a fault, and the forc
   CHECK(rig.library.observed_force_n() == Vec3{});
   CHECK(rig.status == device::DeviceStatus::fault);
   CHECK(rig.device.fault() == fault);
-  CHECK(rig.device.trouble() == trouble);
+  CHECK(rig.device.plugin_fault() == plugin_fault);
   const device::DeviceSample sample = rig.sample();
   CHECK(is_finite(sample.position_mm));
   CHECK(is_finite(sample.velocity_mm_s));

@@ -122,7 +122,7 @@ TEST_CASE("a hand that foresees its way without forces, and its copies, move and
   for (const device::SimulatedHand& one : {plain, foreseeing, foreseeing}) {
     device::SimulatedHand hand = one;
     Sensed sense;
-    hand.feel_by(sense);
+    hand.set_sense(sense);
     DeviceSample sample;
     for (int i = 0; hand.read(sample) == DeviceStatus::ok; ++i) {
       REQUIRE(hand.write({0.1 * std::sin(0.3 * i), -0.1 * std::cos(0.2 * i), 0.2}) ==
@@ -150,7 +150,7 @@ TEST_CASE("a simulated hand yields by its tip's velocity less that without force
   const device::ExplorationPath path(kPlane, {}, random);
   device::SimulatedHand hand(options, path, touch);
   Sensed sense;
-  hand.feel_by(sense);
+  hand.set_sense(sense);
   HeldDevice held(options, touch);
   HeldDevice in_the_air(options, touch);
   std::size_t stroke = 0;

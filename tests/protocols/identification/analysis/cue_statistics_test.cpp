@@ -44,10 +44,10 @@ TEST_CASE("efficiency is what was achieved over what was available") {
   CHECK(statistics.efficiency[0].value.value() == Approx(1.0));
   CHECK(statistics.efficiency[1].value.value() == Approx(3.0));
   CHECK(statistics.efficiency[2].value.value() == Approx(0.75));
-  CHECK(statistics.corrected[0].value.value() == Approx(1.0));
-  CHECK_FALSE(statistics.corrected[1].value);
-  CHECK_FALSE(statistics.corrected[1].interval);
-  CHECK(statistics.corrected[2].value.value() == Approx(0.5 / 0.75));
+  CHECK(statistics.corrected_efficiency[0].value.value() == Approx(1.0));
+  CHECK_FALSE(statistics.corrected_efficiency[1].value);
+  CHECK_FALSE(statistics.corrected_efficiency[1].interval);
+  CHECK(statistics.corrected_efficiency[2].value.value() == Approx(0.5 / 0.75));
   // All participants are alike, so every draw is the same.
   CHECK(statistics.efficiency[2].interval.value().low == Approx(0.75));
   CHECK(statistics.efficiency[2].interval.value().high == Approx(0.75));

@@ -118,11 +118,11 @@ TEST_CASE("a named trial is drawn whether it counts or not, and an unknown one i
   study.close_and_unblind();
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   const ExplorationPath path =
-      exploration_named(study.store(), study.key(), outcomes, trial_name("P01:3"));
+      find_exploration(study.store(), study.key(), outcomes, trial_name("P01:3"));
   CHECK(path.participant == "P01");
   CHECK(path.trial == 3);
   for (const std::string absent : {"P01:99", "P02:1"}) {
-    REQUIRE_THROWS_AS(exploration_named(study.store(), study.key(), outcomes, trial_name(absent)),
+    REQUIRE_THROWS_AS(find_exploration(study.store(), study.key(), outcomes, trial_name(absent)),
                       UsageError);
   }
 }

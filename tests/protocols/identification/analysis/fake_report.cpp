@@ -58,14 +58,14 @@ MethodReport fake_method(const FakeReportOptions& options, std::size_t number) {
     std::sort(times.seconds.begin(), times.seconds.end());
     times.from_plane_on = analysis::quartiles(times.seconds);
   }
-  method.reaction = std::move(reaction);
+  method.reaction_times = std::move(reaction);
   Breakdown trials{BreakdownKind::trial, {}};
   for (int place = 0; place < places && options.participants > 0; ++place) {
     const analysis::Proportion at = by_place[static_cast<std::size_t>(place)];
     trials.groups.push_back({std::to_string(place + 1), at, analysis::wilson_interval(at)});
   }
   method.breakdowns.push_back(std::move(trials));
-  method.over_trials = accuracy_over_trials(right);
+  method.accuracy_over_trials = accuracy_over_trials(right);
   return method;
 }
 

@@ -91,7 +91,7 @@ TEST_CASE("One who swaps labels among many is suspected, and guessers are not") 
   CHECK(warnings_with(report, "P01 0.05") == 1);
   const auto& people = report.methods[0].per_participant;
   CHECK(people[0].swap_p == Approx(1.0 / 65536.0).epsilon(1e-9));
-  CHECK(people[0].swap_adjusted == Approx(12.0 / 65536.0).epsilon(1e-9));
+  CHECK(people[0].swap_p_adjusted == Approx(12.0 / 65536.0).epsilon(1e-9));
 }
 
 }  // namespace touchtrial

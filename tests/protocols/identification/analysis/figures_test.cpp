@@ -113,7 +113,7 @@ TEST_CASE("every figure stands on the page, below its section, but for the parti
     }
     std::size_t shown = 0;
     for (const Section& section : study_document(report, {}, pictures).sections) {
-      for (const std::vector<Block>* blocks : {&section.blocks, &section.more}) {
+      for (const std::vector<Block>* blocks : {&section.blocks, &section.folded_blocks}) {
         for (const Block& block : *blocks) {
           const auto* picture = std::get_if<Picture>(&block);
           if (picture == nullptr) continue;
@@ -167,7 +167,7 @@ TEST_CASE("figures of a pilot or an interim look say so beside SIMULATED") {
     CHECK(contains(script_of(figure), "'PILOT, INTERIM LOOK'"));
     CHECK(contains(script_of(figure), "'SIMULATED'"));
     CHECK(figure.alt.starts_with("PILOT, INTERIM LOOK. "));
-    CHECK(contains(drawn(figure, FigureFormat::svg), ">PILOT, INTERIM LOOK<"));
+    CHECK(contains(draw_figure(figure, FigureFormat::svg), ">PILOT, INTERIM LOOK<"));
   }
 }
 
@@ -184,7 +184,7 @@ TEST_CASE("figures hold the report's counts and intervals") {
   const std::vector<Figure> figures = report_figures(report);
   CHECK(contains(script_of(figure_of(figures, "accuracy-by-class")), "\n1 80 60.869 91.1394\n"));
   CHECK(contains(figure_of(figures, "accuracy-by-class").alt,
-                 "bark 80.0 % (60.9 to 91.1 %), 20 of 25"));
+                 "bark 80.0% (60.9 to 91.1%), 20 of 25"));
   const ConfusionMatrix& confusion = report.methods[0].confusion;
   CHECK(contains(beside(figure_of(figures, "confusion-and-accuracy"), ".csv"),
                  "4,4," + std::to_string(confusion.count(3, 3)) + "," +
@@ -220,14 +220,14 @@ TEST_CASE("figures leave out values that are not finite") {
   report.methods[0].accuracy[1].wilson.low = std::numeric_limits<double>::quiet_NaN();
   const Figure figure = figure_of(report_figures(report), "accuracy-by-class");
   CHECK_FALSE(contains(script_of(figure), "nan"));
-  CHECK(balanced(drawn(figure, FigureFormat::svg)));
+  CHECK(balanced(draw_figure(figure, FigureFormat::svg)));
 }
 
 TEST_CASE("figures of one participant give no interval over participants") {
   FakeReportOptions options{.methods = {"adaptive", "tv-gabor"}, .participants = 1};
   const CueReport cues = fake_cues(options);
   for (const Figure& figure : report_figures(fake_report(options), {.cues = &cues})) {
-    CHECK_FALSE(contains(figure.alt, "0.0 to 100.0 %"));
+    CHECK_FALSE(contains(figure.alt, "0.0 to 100.0%"));
     CHECK_FALSE(contains(figure.alt, "-100.0 to +100.0"));
   }
 }
@@ -241,7 +241,7 @@ TEST_CASE("labels cannot break out of figures") {
   report.collection.flow.excluded = 1;
   report.collection.flow.exclusion_reasons = {"it's\nEOD\n`x` </text>"};
   const std::vector<Figure> figures = report_figures(report, {.cues = &cues});
-  for (const std::string& svg : all_drawn(figures, FigureFormat::svg)) {
+  for (const std::string& svg : draw_figures(figures, FigureFormat::svg)) {
     CHECK(balanced(svg));
     CHECK_FALSE(contains(svg, "<script"));
   }
@@ -265,20 +265,20 @@ TEST_CASE("figures of an exploration show the path in contact, in newtons, over 
   CHECK(contains(script, "tangential force, N"));
   CHECK(contains(script, "'SIMULATED'"));
   CHECK(redraw_files(figures[0]).contains("exploration-3-7-1.png"));
-  const std::string svg = drawn(figures[0], FigureFormat::svg);
+  const std::string svg = draw_figure(figures[0], FigureFormat::svg);
   CHECK(balanced(svg));
   CHECK(contains(svg, "data:image/png;base64,"));
   path.points.clear();
   path.texture.grey = {};
   const std::vector<Figure> bare = report_figures(StudyReport{}, {.explorations = {&path, 1}});
-  CHECK(balanced(drawn(bare[0], FigureFormat::svg)));
+  CHECK(balanced(draw_figure(bare[0], FigureFormat::svg)));
 }
 
 TEST_CASE("figures as SVG are described, stand alone, and share a page without sharing ids") {
   FakeReportOptions options{.servo_trials = 30};
   const CueReport cues = fake_cues(options);
   const std::vector<Figure> figures = report_figures(fake_report(options), {.cues = &cues});
-  const std::vector<std::string> files = all_drawn(figures, FigureFormat::svg);
+  const std::vector<std::string> files = draw_figures(figures, FigureFormat::svg);
   std::set<std::string> ids;
   for (std::size_t i = 0; i < files.size(); ++i) {
     const std::string& svg = files[i];
@@ -304,17 +304,17 @@ TEST_CASE("figures as SVG are described, stand alone, and share a page without s
 TEST_CASE("figures drawn one by one or together, at any time, are equal bytes") {
   const std::vector<Figure> figures = report_figures(fake_report());
   for (const FigureFormat format : {FigureFormat::svg, FigureFormat::pdf}) {
-    const std::vector<std::string> files = all_drawn(figures, format);
+    const std::vector<std::string> files = draw_figures(figures, format);
     REQUIRE(files.size() == figures.size());
     // From 1.18 on cairo hides the time in a compressed part of the file.
     if (format == FigureFormat::pdf && !contains(files[1], "/CreationDate")) continue;
-    CHECK(files[1] == drawn(figures[1], format));
-    CHECK(files.back() == drawn(figures.back(), format));
+    CHECK(files[1] == draw_figure(figures[1], format));
+    CHECK(files.back() == draw_figure(figures.back(), format));
   }
 }
 
 TEST_CASE("figures as PDF are PDF, without the time at which they were drawn") {
-  const std::string pdf = drawn(report_figures(fake_report())[1], FigureFormat::pdf);
+  const std::string pdf = draw_figure(report_figures(fake_report())[1], FigureFormat::pdf);
   CHECK(pdf.starts_with("%PDF-"));
   CHECK_FALSE(contains(pdf, "/CreationDate (D:20"));
 }
@@ -323,7 +323,8 @@ TEST_CASE("figures of a large study stay small") {
   FakeReportOptions options{.participants = 1000, .servo_trials = 25000};
   const CueReport cues = fake_cues(options);
   const std::vector<Figure> figures = report_figures(fake_report(options), {.cues = &cues});
-  for (const std::string& svg : all_drawn(figures, FigureFormat::svg)) CHECK(svg.size() < 300'000);
+  for (const std::string& svg : draw_figures(figures, FigureFormat::svg))
+    CHECK(svg.size() < 300'000);
 }
 
 TEST_CASE("matplotlib and ggplot2 redraw every figure from the data beside it") {
@@ -358,6 +359,7 @@ TEST_CASE("matplotlib and ggplot2 redraw every figure from the data beside it") 
 TEST_CASE("figures without gnuplot say what to install") {
   const Figure figure = report_figures(fake_report()).front();
   const EmptyPath without;
-  CHECK(contains(message_of<Error>([&] { static_cast<void>(drawn(figure, FigureFormat::svg)); }),
-                 "install gnuplot-nox"));
+  CHECK(contains(
+      message_of<Error>([&] { static_cast<void>(draw_figure(figure, FigureFormat::svg)); }),
+      "install gnuplot-nox"));
 }

@@ -66,10 +66,11 @@ MethodReport method_of(const std::string& name, const std::vector<std::vector<in
   method.d_prime_over_participants = analysis::DPrime{1.7, 1.2, 2.3};
   method.choice = choice_of();
   add_participants(method);
-  for (const double median : {4.0, 5.5, 6.25, 5.0}) method.reaction.push_back(times_of(median));
+  for (const double median : {4.0, 5.5, 6.25, 5.0})
+    method.reaction_times.push_back(times_of(median));
   method.breakdowns = {
       {BreakdownKind::trial, {{"1", {6, 4}, {0.3, 0.9}}, {"2", {6, 5}, {0.4, 1}}}}};
-  method.unbiased = std::vector<UnbiasedHits>(4, {{6, 0.62, {0.5, 0.74}, 0.114}, 0.131});
+  method.unbiased_hits = std::vector<UnbiasedHits>(4, {{6, 0.62, {0.5, 0.74}, 0.114}, 0.131});
   method.order = analysis::OrderEffects{
       {6, 0.0123, {-0.002, 0.0266}, 0.0136}, 0.082, {18, 9, 6.25, 0.31}, {17, 4, 6.0, 0.5}, 1999};
   method.confidence = ConfidenceReport{
@@ -130,19 +131,19 @@ choices::AnswersByPlace places_of() {
   }
   places.p = 0.012;
   places.deals = 9999;
-  places.own.anybody = {0.0034, 9999, 6, 2, 0.3};
+  places.preferences.global_null = {0.0034, 9999, 6, 2, 0.3};
   for (int i = 1; i <= 6; ++i) {
     choices::Preference one;
     one.participant = "P0" + std::to_string(i);
     one.choice = i % 3;
     one.place = 0;
     one.answers = 24;
-    one.named = 12;
+    one.named_count = 12;
     one.right_there = {8, 7};
     one.right_elsewhere = {16, 9};
     one.p = i <= 2 ? 0.004 : 0.4;
     one.p_holm = i <= 2 ? 0.024 : 1.0;
-    places.own.people.push_back(one);
+    places.preferences.people.push_back(one);
   }
   return places;
 }
@@ -158,7 +159,7 @@ analysis::PrimaryResult primary_of() {
                   {"all", "with all excluded sessions", 7, 175, -0.06,
                    analysis::Interval{-0.17, 0.05}}},
       .verdict = analysis::Verdict::undecided,
-      .because = "Collecting ended with 7 of 20 planned participants."};
+      .reason = "Collecting ended with 7 of 20 planned participants."};
 }
 
 analysis::Collection collection_of() {

@@ -24,7 +24,7 @@ using namespace analysis;
 std::string text_of(const Section& section) {
   std::string text;
   for (const Block& block : section.blocks) {
-    if (const auto* paragraph = std::get_if<Cited>(&block)) text += paragraph->text + '\n';
+    if (const auto* paragraph = std::get_if<CitedText>(&block)) text += paragraph->text + '\n';
   }
   return text;
 }
@@ -142,7 +142,7 @@ TEST_CASE("methods: sessions without noise and practice that was not passed are 
                  record::DeviationBody{"no-masking-noise", ""});
   };
   check_only_in(methods_text({}, {.participant = {}, .before_trials = deviating}), methods_text({}),
-                {"but for 2 sessions"});
+                {"in 2 sessions"});
 }
 
 TEST_CASE("methods: they are the page's last section and a file of their own, escaped") {
@@ -184,7 +184,7 @@ TEST_CASE("methods: a look at the registered question has none") {
       analysis_of(outcomes.design).results(outcomes, {.source = &source, .page = true});
   const Provenance provenance = provenance_of(study.store(), "study.db");
   REQUIRE_FALSE(methods_markdown(all->document(provenance, {})).empty());
-  const auto question = question_alone(*all, study.store());
+  const auto question = registered_answer_only(*all, study.store());
   CHECK(methods_markdown(question->document(provenance, {})).empty());
 }
 
@@ -213,7 +213,7 @@ void check_facts(const std::string& text, const std::vector<std::string>& facts)
 TEST_CASE("methods: an author and a year name a publication") {
   check_facts(shipped_threshold_text("detection.json"),
               {"QUEST+",        "(Watson, 2017)", "60 trials",    "-40 to 0 in steps of 1",
-               "6 catch",       "20 trials",      "2.5 s",        "81.6 %",
+               "6 catch",       "20 trials",      "2.5 s",        "81.6%",
                "0.15 to 2.5 N", "15 s",           "2 to 60 dB",   "up to 0.5",
                "w^0.5",         "Beta(1, 3)",     "median 10 dB", "Beta(1, 10)",
                "100 mm/s",      "0.7 N",          "100 ms",       "“Which surface had a texture?”",

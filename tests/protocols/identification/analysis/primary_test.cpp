@@ -53,7 +53,7 @@ StudyReport final_report_of(FakeStudy& study) {
 
 /// What a look at the registered question alone is made of.
 StudyReport answer_of(FakeStudy& study) {
-  return make_report(analysis::load_for_question(study.store(), study.key()));
+  return make_report(analysis::load_outcomes_for_question(study.store(), study.key()));
 }
 
 nlohmann::json json_of(const StudyReport& report) {
@@ -92,7 +92,7 @@ struct Judged {
     result.p = p;
   }
   [[nodiscard]] Verdict verdict() {
-    analysis::judge(result, course);
+    analysis::set_verdict(result, course);
     return result.verdict;
   }
   [[nodiscard]] Verdict verdict(double estimate, analysis::Interval interval, double p) {
@@ -220,16 +220,16 @@ TEST_CASE("an effect may be excluded, reached or open") {
     return judged.verdict(estimate, interval, p);
   };
   CHECK(verdict(0.6, {0.5, 0.7}, 0.001) == Verdict::supported);
-  CHECK_THAT(result.because, names("40.0%"));
-  CHECK(result.because.starts_with("p < 0.05. "));
+  CHECK_THAT(result.reason, names("40.0%"));
+  CHECK(result.reason.starts_with("p < 0.05. "));
   CHECK(verdict(0.6, {0.5, 0.7}, 0.05) == Verdict::supported);
-  CHECK(result.because.starts_with("p = 0.05"));
+  CHECK(result.reason.starts_with("p = 0.05"));
   CHECK(verdict(0.6, {0.5, 0.7}, 0.04999) == Verdict::supported);
-  CHECK(result.because.starts_with("p = 0.04999000 < 0.05. "));
+  CHECK(result.reason.starts_with("p = 0.04999000 < 0.05. "));
   CHECK(verdict(0.25, {0.21, 0.29}, 0.01) == Verdict::supported);
-  CHECK_THAT(result.because, names("40.0%"));
+  CHECK_THAT(result.reason, names("40.0%"));
   CHECK(verdict(0.3, {0.15, 0.45}, 0.2) == Verdict::undecided);
-  CHECK(result.because.starts_with("p > 0.05. "));
+  CHECK(result.reason.starts_with("p > 0.05. "));
   CHECK(verdict(0.2, {0.15, 0.25}, 0.5) == Verdict::not_supported);
   result.sides = analysis::Sides::two;
   CHECK(verdict(0.1, {0.05, 0.15}, 0.001) == Verdict::not_supported);
@@ -241,7 +241,7 @@ TEST_CASE("an interval without width, or cut where possible values end, is said 
   result.smallest_effect = 0.4;
   const auto because = [&](double estimate, analysis::Interval interval, double p) {
     static_cast<void>(judged.verdict(estimate, interval, p));
-    return result.because;
+    return result.reason;
   };
   const std::string unbounded = because(0.9, {0.1, 1.0}, 0.03);
   CHECK(because(0.7, {0.0, 1.0}, 0.2) != because(0.7, {0.1, 0.9}, 0.2));
@@ -257,10 +257,10 @@ TEST_CASE("more participants than planned are said, and decide nothing after a l
   Judged judged(0.2, 25);
   judged.course.planned = 20;
   CHECK(judged.verdict() == Verdict::supported);
-  CHECK_THAT(judged.result.because, names("25 5"));
+  CHECK_THAT(judged.result.reason, names("25 5"));
   judged.course.registered_looks = {10};
   CHECK(judged.verdict() == Verdict::undecided);
-  CHECK_THAT(judged.result.because, names("5 20"));
+  CHECK_THAT(judged.result.reason, names("5 20"));
   judged.result.p = 0.3;
   CHECK(judged.verdict() == Verdict::not_supported);
 }
@@ -321,13 +321,13 @@ TEST_CASE("a registered look may end collecting, and its interval has the level 
   const StudyReport look = answer_of(study);
   CHECK(look.primary->verdict == Verdict::supported);
   CHECK(look.primary->interval_level == Approx(1.0 - 0.0055745966));
-  CHECK_THAT(look.primary->because, names("4"));
+  CHECK_THAT(look.primary->reason, names("4"));
   analysis::Provenance provenance;
   provenance.state = study.store().state();
   CHECK_THAT(analysis::document_text(study_document(look, provenance)), holds_text("INTERIM LOOK"));
   const StudyReport report = final_report_of(study);
   CHECK(report.primary->verdict == Verdict::supported);
-  CHECK(report.primary->because != look.primary->because);
+  CHECK(report.primary->reason != look.primary->reason);
   CHECK(report.departures.empty());
 }
 
@@ -421,7 +421,7 @@ TEST_CASE("with one order of methods alone nothing tells the method from the per
   CHECK(report.primary->verdict == Verdict::undecided);
   CHECK_FALSE(report.primary->p);
   CHECK_FALSE(report.primary->registered().estimate);
-  CHECK_FALSE(report.primary->because.empty());
+  CHECK_FALSE(report.primary->reason.empty());
 }
 
 TEST_CASE("a study of mixed blocks, and a registered test, have no period-adjusted one") {
@@ -450,18 +450,18 @@ TEST_CASE("as good by a margin is judged by the interval above minus the margin"
     return judged.verdict(0.5 * (interval.low + interval.high), interval, p);
   };
   CHECK(verdict({-0.05, 0.03}, 0.02) == Verdict::supported);
-  CHECK_THAT(result.because, names("90% 7.0 0"));
-  const std::string holds_zero = result.because;
+  CHECK_THAT(result.reason, names("90% 7.0 0"));
+  const std::string holds_zero = result.reason;
   CHECK(verdict({0.01, 0.09}, 0.001) == Verdict::supported);
-  CHECK(result.because != holds_zero);
-  const std::string better = result.because;
+  CHECK(result.reason != holds_zero);
+  const std::string better = result.reason;
   CHECK(verdict({-0.06, -0.01}, 0.01) == Verdict::supported);
-  CHECK(result.because != holds_zero);
-  CHECK(result.because != better);
+  CHECK(result.reason != holds_zero);
+  CHECK(result.reason != better);
   CHECK(verdict({-0.1, 0.02}, 0.2) == Verdict::undecided);
-  CHECK_THAT(result.because, names("7.0"));
+  CHECK_THAT(result.reason, names("7.0"));
   CHECK(verdict({-0.2, -0.1}, 0.99) == Verdict::not_supported);
-  CHECK(result.because != better);
+  CHECK(result.reason != better);
 }
 
 TEST_CASE("methods that are not above chance are not as good as each other") {
@@ -473,7 +473,7 @@ TEST_CASE("methods that are not above chance are not as good as each other") {
   CHECK(judged.verdict(0.0, {-0.05, 0.05}, 0.02) == Verdict::supported);
   result.above_chance = {{"adaptive", 0.21, 0.3}, {"edge", 0.4, 0.04}};
   CHECK(judged.verdict(0.0, {-0.05, 0.05}, 0.02) == Verdict::undecided);
-  CHECK_THAT(result.because, names("adaptive 21.0% 0.3"));
+  CHECK_THAT(result.reason, names("adaptive 21.0% 0.3"));
   CHECK(judged.verdict(-0.2, {-0.25, -0.15}, 0.99) == Verdict::not_supported);
 }
 
@@ -489,7 +489,7 @@ TEST_CASE("people who guess with both methods support nothing") {
   const StudyReport report = final_report_of(study);
   CHECK(report.primary->p.value() <= 0.05);
   CHECK(report.primary->verdict == Verdict::undecided);
-  CHECK_FALSE(report.primary->because.empty());
+  CHECK_FALSE(report.primary->reason.empty());
   CHECK(json_of(report)["primary"]["above_chance"].size() == 2);
 }
 

@@ -71,7 +71,7 @@ void add_people_and_texts(FakeStudy& study) {
 std::string everything(const StudyReport& report, const analysis::Provenance& provenance) {
   const analysis::Document document = study_document(report, provenance);
   std::string all = analysis::document_text(document) + analysis::page_html(document) +
-                    analysis::document_markdown(analysis::tables_alone(document), "") +
+                    analysis::document_markdown(analysis::tables_only(document), "") +
                     analysis::tables_latex(document) + report_json(report);
   for (const analysis::Figure& figure : report_figures(report)) {
     all += figure.id + figure.caption + figure.alt;

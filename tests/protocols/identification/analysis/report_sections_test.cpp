@@ -84,7 +84,7 @@ TEST_CASE("A catch trial and a lead-in come before, but have no accuracy") {
   made.trial({.felt = kCloth, .answered = kBark});
   // The last of four trials alone is wrong after a texture, and after an answer: it names neither
   // cloth nor anything but that answer, bark.
-  const auto order = order_of(made.outcomes, 0);
+  const auto order = order_effects_of(made.outcomes, 0);
   REQUIRE(order.has_value());
   CHECK(order->class_before.wrong == 1);
   CHECK(order->class_before.same == 0);
@@ -103,12 +103,12 @@ TEST_CASE("Unbiased hit rates are of participants, and their mean of classes com
     made.trial({.session = session, .felt = kCloth, .answered = session == 1 ? kCloth : kBark});
   }
   const auto report = make_report(made.outcomes);
-  const auto& unbiased = report.methods[0].unbiased;
+  const auto& unbiased = report.methods[0].unbiased_hits;
   REQUIRE(unbiased.size() == 3);
   CHECK(unbiased[kBark].rate.mean == 0.75);  // 1, and 1 of 1 presented times 1 of 2 answered
   CHECK(unbiased[kCloth].rate.mean == 0.5);
   CHECK(unbiased[2].rate.mean == 0.625);
-  CHECK(unbiased[kBark].by_chance == 0.5);  // always right or wrong together; and always 1/2
+  CHECK(unbiased[kBark].chance_rate == 0.5);  // always right or wrong together; and always 1/2
   const auto json = nlohmann::json::parse(report_json(report));
   CHECK(json["methods"][0]["unbiased_hits"]["mean"] == 0.625);
   CHECK(json["methods"][0]["unbiased_hits"]["classes"][kCloth]["mean"] == 0.5);
@@ -167,9 +167,8 @@ TEST_CASE("Stations are strata of the deciding question in a collected study") {
   const auto json = nlohmann::json::parse(report_json(report));
   CHECK(json["primary"]["stations"]["stations"] == 2);
   CHECK(json["primary"]["stations"]["random"].is_null());
-  CHECK(
-      contains(analysis::document_markdown(analysis::tables_alone(study_document(report, {})), ""),
-               "2 stations"));
+  CHECK(contains(analysis::document_markdown(analysis::tables_only(study_document(report, {})), ""),
+                 "2 stations"));
   for (analysis::SessionOutcome& one : made.outcomes.sessions) one.row.station = 0;
   CHECK_FALSE(make_report(made.outcomes).primary->stations.has_value());
 }
@@ -249,10 +248,10 @@ TEST_CASE("With three methods, every pair is compared and adjusted, and all are 
   CHECK(bark.first == analysis::Proportion{3, 3});
   CHECK(bark.second == analysis::Proportion{3, 0});
   CHECK(bark.mcnemar_mid_p.value() == Approx(0.125));  // 2 / 8 less half of that
-  CHECK(report.pairs[0].classes[kBark].paired.difference.value() == Approx(0.0));
-  REQUIRE(report.together.has_value());
-  CHECK(report.together->cochran.q == Approx(9.0));
-  CHECK(report.together->cochran.degrees_of_freedom == 2);
+  CHECK(report.pairs[0].classes[kBark].comparison.difference.value() == Approx(0.0));
+  REQUIRE(report.all_methods.has_value());
+  CHECK(report.all_methods->cochran.q == Approx(9.0));
+  CHECK(report.all_methods->cochran.degrees_of_freedom == 2);
 }
 
 TEST_CASE("Three methods are shown in JSON and on the terminal") {
@@ -267,7 +266,7 @@ TEST_CASE("Three methods are shown in JSON and on the terminal") {
     CHECK(json["references"].contains(key.get<std::string>()));
   }
   const std::string text = analysis::document_text(study_document(report, {}));
-  CHECK(contains(text, "a less c"));
+  CHECK(contains(text, "a minus c"));
   CHECK(contains(text, "Q = 9.00"));
 }
 

@@ -104,7 +104,7 @@ TEST_CASE("document: the result is the verdict, the departures and one table of 
   const Document document = hand_made();
   const Section& result = document.sections.front();
   CHECK(result.id == "result");
-  CHECK_THAT(std::get<Cited>(result.blocks.at(0)).text,
+  CHECK_THAT(std::get<CitedText>(result.blocks.at(0)).text,
              names("−8.3 95% −20.0 3.4 6 20 7 0.125 0.05"));
   const auto departures = std::ranges::find_if(
       result.blocks, [](const Block& block) { return std::holds_alternative<Warnings>(block); });
@@ -129,7 +129,7 @@ TEST_CASE("document: after an unregistered look no p stands without saying so") 
   CHECK(table_named(document, "headline").notes.back().text != words);
   for (const Section& section : document.sections) {
     for (const Block& block : section.blocks) {
-      const auto* sentence = std::get_if<Cited>(&block);
+      const auto* sentence = std::get_if<CitedText>(&block);
       if (sentence == nullptr || sentence->text.find("p = ") == std::string::npos) continue;
       CHECK_THAT(sentence->text, holds_text(words));
     }
@@ -152,13 +152,14 @@ TEST_CASE("document: participants' flow is drawn once, explorations come last am
   CHECK_THAT(page_html(document), !holds_text("figure-participant-flow"));
   for (const Section& section : document.sections) {
     if (section.id != "cues") continue;
-    const auto first_table = std::ranges::find_if(
-        section.more, [](const Block& block) { return std::holds_alternative<Table>(block); });
-    REQUIRE(first_table != section.more.begin());
+    const auto first_table = std::ranges::find_if(section.folded_blocks, [](const Block& block) {
+      return std::holds_alternative<Table>(block);
+    });
+    REQUIRE(first_table != section.folded_blocks.begin());
     REQUIRE(std::holds_alternative<Picture>(*std::prev(first_table)));
     CHECK(std::get<Picture>(*std::prev(first_table)).id == "ideal-observers");
-    REQUIRE(std::holds_alternative<Picture>(section.more.back()));
-    CHECK(std::get<Picture>(section.more.back()).id == "exploration-1-2");
+    REQUIRE(std::holds_alternative<Picture>(section.folded_blocks.back()));
+    CHECK(std::get<Picture>(section.folded_blocks.back()).id == "exploration-1-2");
   }
 }
 
@@ -180,7 +181,7 @@ TEST_CASE("document: an observer that cannot reach participants is never as unce
   const std::string reached = page();
   // Strength, which is not the nearest, is right less often.
   cues.observers[0].matched_accuracy = 0.58;
-  cues.observers[0].wanted_accuracy = 0.77;
+  cues.observers[0].target_accuracy = 0.77;
   const std::string unreached = page();
   CHECK(unreached != reached);
   cues.match->best = Cue::rms;
@@ -233,7 +234,7 @@ TEST_CASE("document: figures that were not drawn are described, without their ca
 
 TEST_CASE("document: where all differences are equal, that there is no interval is marked") {
   StudyReport report = hand_made_report();
-  report.pairs[0].classes[1].paired.interval = {-0.08, -0.08};
+  report.pairs[0].classes[1].comparison.interval = {-0.08, -0.08};
   const Document document = study_document(report, hand_made_provenance());
   const Table table = table_named(document, "methods-by-class-1");
   CHECK(table.rows[1][5].text == "– *");

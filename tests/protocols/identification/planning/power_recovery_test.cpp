@@ -9,7 +9,7 @@ namespace {
 
 planning::identification::PowerReport report_of(const RehearsedTinyStudy& study,
                                                 std::vector<int> sizes, int runs) {
-  const planning::identification::BankedFeelings bank = study.bank(30, 4);
+  const planning::identification::PrecomputedPerception bank = study.bank(30, 4);
   planning::PowerPlan plan{.participants = std::move(sizes), .runs = runs};
   return planning::identification::make_power_report(planning::identification::make_runs(
       study.planned(bank, plan.participants.back()), study.test, {}, plan, 2));

@@ -77,7 +77,7 @@ planning::identification::PowerRuns runs_by_hand(int runs, const RunOf& run_of) 
 TEST_CASE("a power run is the same with any number of threads, and keeps its first runs") {
   TinyStudyOptions options{.side_px = 60, .trials = R"({"repeats":2})"};
   const RehearsedTinyStudy tiny(options);
-  const planning::identification::BankedFeelings bank = tiny.bank();
+  const planning::identification::PrecomputedPerception bank = tiny.bank();
   const auto made = [&](int runs, int jobs) {
     return planning::identification::make_runs(tiny.planned(bank), tiny.test, {},
                                                plan_of({3, 5}, runs), jobs)
@@ -94,8 +94,8 @@ TEST_CASE("a power run is the same with any number of threads, and keeps its fir
 
 TEST_CASE("a bank of feelings is the same with any number of threads") {
   const RehearsedTinyStudy tiny;
-  const planning::identification::BankedFeelings one = tiny.bank(3, 2, 1, 1);
-  const planning::identification::BankedFeelings other = tiny.bank(3, 2, 1, 3);
+  const planning::identification::PrecomputedPerception one = tiny.bank(3, 2, 1, 1);
+  const planning::identification::PrecomputedPerception other = tiny.bank(3, 2, 1, 3);
   for (std::uint64_t draw = 0; draw < 3; ++draw) {
     CHECK(one.felt({1, 0, 0}, {5, 1, 1, draw}) == other.felt({1, 0, 0}, {5, 1, 1, draw}));
   }
@@ -123,7 +123,7 @@ TEST_CASE("the report of a power run agrees with its runs") {
   CHECK(report.rows[0].false_alarms == (analysis::Proportion{4, 0}));
   CHECK(report.rows[0].attainable == Approx(0.04));
   CHECK(report.targets[0].smallest == 5);
-  CHECK_FALSE(report.targets[0].surely.has_value());
+  CHECK_FALSE(report.targets[0].smallest_certain.has_value());
   const auto json = nlohmann::json::parse(planning::identification::power_json(report));
   CHECK(json.at("simulated") == true);
   CHECK(json.at("stamp") == "SIMULATED");

@@ -163,7 +163,7 @@ TEST_CASE("every change from trial to trial changes answers, and how long people
                            .trials = R"({"repeats":4,"lead_in":2,"break_every":7})",
                            .visits = R"({"count":2})"};
   RehearsedTinyStudy study(options, changing_subject(simulation::Training::own));
-  const BankedFeelings bank = study.bank();
+  const PrecomputedPerception bank = study.bank();
   const auto answers = [&](const simulation::SubjectModel& subject) {
     const RehearsedStudy planned(study.tiny.key().study, subject, study.test, bank, 10);
     std::vector<std::optional<int>> given;
@@ -194,7 +194,7 @@ TEST_CASE("every change from trial to trial changes answers, and how long people
 }
 
 /// Repeats what the servo path felt, without a servo.
-class RememberedFeelings final : public Feelings {
+class RememberedFeelings final : public PerceptionSource {
  public:
   RememberedFeelings(const RehearsedTinyStudy& study, int participants, std::uint64_t seed)
       : knowledge_(study.servo.knowledge(seed)) {
@@ -257,7 +257,7 @@ Answers answers_of(const RehearsedStudy& planned, int studies, std::uint64_t see
 TEST_CASE("a bank of independent explorations gives the accuracies and confusions of the servo") {
   TinyStudyOptions options{.side_px = 60};
   const RehearsedTinyStudy study(options);
-  const BankedFeelings bank = study.bank(60, 12);
+  const PrecomputedPerception bank = study.bank(60, 12);
   constexpr int kStudies = 12;
   const Answers fast = answers_of(study.planned(bank), kStudies, 1);
   const Answers slow = answers_of(study.planned(study.servo), kStudies, 2);
@@ -288,7 +288,7 @@ TEST_CASE("under the null nobody feels what is presented") {
     sure.lapse = 0.0;
     return sure;
   }());
-  const BankedFeelings bank = study.bank();
+  const PrecomputedPerception bank = study.bank();
   const RehearsedStudy planned = study.planned(bank);
   int correct = 0;
   int trials = 0;
@@ -331,7 +331,7 @@ TEST_CASE("with a margin, methods are alike, or the first is worse by the margin
   RehearsedTinyStudy study = two_methods();
   study.test.margin = 0.1;
   study.test.sides = Sides::one;
-  const BankedFeelings bank = study.bank();
+  const PrecomputedPerception bank = study.bank();
   const RehearsedStudy planned = study.planned(bank);
   const SharesRight alike(planned, Hypothesis::population);
   const SharesRight worse(planned, Hypothesis::null);
@@ -354,7 +354,7 @@ TEST_CASE("with trainings of their own people are on average no better than with
   const RehearsedTinyStudy forgetful(options, subject);
   constexpr int kStudies = 40;
   const auto share = [&](const RehearsedTinyStudy& study) {
-    const BankedFeelings bank = study.bank(60, 12);
+    const PrecomputedPerception bank = study.bank(60, 12);
     const Answers answers = answers_of(study.planned(bank), kStudies, 1);
     return answers.correct / answers.trials;
   };

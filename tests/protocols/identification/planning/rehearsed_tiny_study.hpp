@@ -32,8 +32,8 @@ namespace touchtrial {
 }
 
 /// Feels every exploration anew through hand, device and servo, exactly as `simulate` does: the
-/// slow reference of BankedFeelings. Refers to its arguments, which must outlive it.
-class ServoFeelings final : public planning::identification::Feelings {
+/// slow reference of PrecomputedPerception. Refers to its arguments, which must outlive it.
+class ServoFeelings final : public planning::identification::PerceptionSource {
  public:
   ServoFeelings(const simulation::LabelledFields& fields, const study::Study& study,
                 const simulation::SubjectModel& subject)
@@ -69,14 +69,14 @@ struct RehearsedTinyStudy {
         fields(tiny.key(), source),
         servo(fields, tiny.key().study, subject) {}
 
-  [[nodiscard]] planning::identification::BankedFeelings bank(int explorations = 20,
-                                                              int trainings = 3,
-                                                              std::uint64_t seed = 1,
-                                                              int jobs = 2) const {
+  [[nodiscard]] planning::identification::PrecomputedPerception bank(int explorations = 20,
+                                                                     int trainings = 3,
+                                                                     std::uint64_t seed = 1,
+                                                                     int jobs = 2) const {
     return {fields, tiny.key().study, subject, {explorations, trainings, seed, jobs}};
   }
   [[nodiscard]] planning::identification::RehearsedStudy planned(
-      const planning::identification::Feelings& feelings, int most = 12) const {
+      const planning::identification::PerceptionSource& feelings, int most = 12) const {
     return {tiny.key().study, subject, test, feelings, most};
   }
 

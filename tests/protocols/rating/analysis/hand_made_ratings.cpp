@@ -12,7 +12,7 @@ std::string said_in(const analysis::Document& document) {
   std::string said;
   for (const analysis::Section& section : document.sections) {
     for (const analysis::Block& block : section.blocks) {
-      if (const auto* text = std::get_if<analysis::Cited>(&block)) said += text->text + "\n";
+      if (const auto* text = std::get_if<analysis::CitedText>(&block)) said += text->text + "\n";
     }
   }
   return said;
@@ -41,13 +41,13 @@ void HandMadeRatings::rated(int session, int texture_class, int method,
   trial.has_stimulus = true;
   trial.scored = true;
   trial.counted = outcomes.sessions.at(static_cast<std::size_t>(session - 1)).counted;
-  trial.row.answer = Rated{values};
+  trial.row.answer = RatingAnswer{values};
 }
 
 void HandMadeRatings::caught(int session, const std::vector<double>& values) {
   analysis::TrialOutcome& trial = add_trial(outcomes, session);
   trial.role = study::Role::catch_trial;
-  trial.row.answer = Rated{values};
+  trial.row.answer = RatingAnswer{values};
 }
 
 void HandMadeRatings::missed(int session, int texture_class, int method) {

@@ -62,7 +62,7 @@ TEST_CASE("a page of ratings begins with the difference of the first two methods
     CHECK(std::ranges::count(ids, id) == 1);
   }
   CHECK_THAT(analysis::tables_latex(document), holds_text("bark"));
-  CHECK_THAT(analysis::document_markdown(analysis::tables_alone(document), ""),
+  CHECK_THAT(analysis::document_markdown(analysis::tables_only(document), ""),
              holds_text("| bark"));
 }
 
@@ -98,7 +98,7 @@ TEST_CASE("gnuplot draws every figure of ratings") {
     CHECK(std::ranges::count_if(figures, [](const analysis::Figure& figure) {
             return figure.id.starts_with("ratings");
           }) == static_cast<std::ptrdiff_t>(report.scales.size()));
-    for (const std::string& svg : analysis::all_drawn(figures, analysis::FigureFormat::svg)) {
+    for (const std::string& svg : analysis::draw_figures(figures, analysis::FigureFormat::svg)) {
       CHECK(svg.size() > 1000);
     }
   }

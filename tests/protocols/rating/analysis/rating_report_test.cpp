@@ -1,5 +1,5 @@
 // The report's numbers against the same ones computed here from the ratings themselves.
-#include "analysis/exports/dataset.hpp"
+#include "analysis/exports/column_meanings.hpp"
 #include "analysis/exports/trial_tables.hpp"
 #include "analysis/report/results.hpp"
 #include "protocols/rating/analysis/hand_made_ratings.hpp"

@@ -262,12 +262,12 @@ TEST_CASE("one person, or people who rated one item, have nothing to agree about
 
 TEST_CASE("people agree with themselves as far as their repeats correlate") {
   const own::RetestReliability found = own::retest_reliability(people(), kItems);
-  REQUIRE(found.own.size() == 5);
-  check_near(found.own[0].value(), 0.972941393518234);
-  check_near(found.own[2].value(), 0.821998526884361);
-  check_near(found.own[4].value(), 0.850746268656716);
+  REQUIRE(found.correlations.size() == 5);
+  check_near(found.correlations[0].value(), 0.972941393518234);
+  check_near(found.correlations[2].value(), 0.821998526884361);
+  check_near(found.correlations[4].value(), 0.850746268656716);
   CHECK(found.participants == 5);
-  CHECK(found.cut == 0);
+  CHECK(found.clamped == 0);
   check_near(found.quartiles.lower.value(), 0.850746268656716);
   check_near(found.quartiles.median.value(), 0.943138158905794);
   check_near(found.mean.value(), 0.935857806046403);
@@ -278,10 +278,10 @@ TEST_CASE("somebody who repeats every answer counts as far as the cut, who says 
   std::vector<RatedParticipant> mixed = people_who_say(0.3, 1);
   mixed.push_back(participant_of({{.1, .1}, {.9, .9}}, {}));
   const own::RetestReliability found = own::retest_reliability(mixed, kItems);
-  CHECK_FALSE(found.own[0]);
-  CHECK(found.own[1] == 1.0);
+  CHECK_FALSE(found.correlations[0]);
+  CHECK(found.correlations[1] == 1.0);
   CHECK(found.participants == 1);
-  CHECK(found.cut == 1);
+  CHECK(found.clamped == 1);
   check_near(found.mean.value(), own::kMaxCorrelation);
   CHECK_FALSE(found.interval);
   mixed.push_back(participant_of({{.1, .1}, {.8, .8}}, {}));
@@ -310,23 +310,23 @@ TEST_CASE("the use of a scale counts its ends, different values and who uses alm
   CHECK(uses.participants[0].distinct == 3);
   check_near(uses.participants[0].mean.value(), 4.5);
   check_near(uses.participants[0].sd.value(), std::sqrt(8.7));
-  CHECK_FALSE(uses.participants[0].narrow);
+  CHECK_FALSE(uses.participants[0].is_narrow);
   check_near(uses.participants[1].sd.value(), 0.15);
-  CHECK(uses.participants[1].narrow);
+  CHECK(uses.participants[1].is_narrow);
   CHECK(uses.participants[1].distinct == 2);
   CHECK_FALSE(uses.participants[2].sd);
-  CHECK_FALSE(uses.participants[2].narrow);
+  CHECK_FALSE(uses.participants[2].is_narrow);
   CHECK(uses.participants[3].at_low.n == 0);
   CHECK_FALSE(uses.participants[3].mean);
   CHECK(uses.participants[3].distinct == 0);
   CHECK(uses.at_low == Proportion{11, 2});
   CHECK(uses.at_high == Proportion{11, 4});
-  CHECK(uses.narrow == 1);
+  CHECK(uses.narrow_count == 1);
 }
 
 TEST_CASE("constant answers use nothing of the scale, nobody's have no share at its ends") {
   const own::ScaleUses constant = own::scale_use(people_who_say(0.1, 2), kLine);
-  CHECK(constant.narrow == 2);
+  CHECK(constant.narrow_count == 2);
   CHECK(constant.participants[0].sd == 0.0);
   CHECK(constant.participants[0].distinct == 1);
   CHECK_FALSE(own::scale_use({}, kLine).at_low.share());
@@ -400,8 +400,8 @@ TEST_CASE("a standardised difference has the interval of noncentral t") {
   const own::StandardisedDifference found = own::standardised_difference(differences).value();
   check_near(found.d_z, 1.227263174655904);
   check_near(found.interval.value(), 0.197347758470469, 2.205575046651103);
-  check_near(found.jackknifed->value, 1.1036161840044594);
-  check_near(found.jackknifed->interval, -0.1104683413144383, 2.3177007093233568);
+  check_near(found.jackknife_estimate->value, 1.1036161840044594);
+  check_near(found.jackknife_estimate->interval, -0.1104683413144383, 2.3177007093233568);
   std::vector<double> turned;
   for (const double difference : differences) turned.push_back(-difference);
   check_near(own::standardised_difference(turned, 0.9)->interval.value(), -2.034955283462731,
@@ -417,8 +417,8 @@ TEST_CASE("a standardised difference has the interval of noncentral t") {
 TEST_CASE("a standardised difference needs two that differ, and its interval a t within reach") {
   CHECK_FALSE(own::standardised_difference(std::vector{0.2}));
   CHECK_FALSE(own::standardised_difference(std::vector{0.2, 0.2, 0.2}));
-  CHECK_FALSE(own::standardised_difference(std::vector{0.2, 0.3})->jackknifed);
-  CHECK_FALSE(own::standardised_difference(std::vector{0.2, 0.2, 0.2, 0.3})->jackknifed);
+  CHECK_FALSE(own::standardised_difference(std::vector{0.2, 0.3})->jackknife_estimate);
+  CHECK_FALSE(own::standardised_difference(std::vector{0.2, 0.2, 0.2, 0.3})->jackknife_estimate);
   const own::StandardisedDifference far =
       own::standardised_difference(std::vector{0.5, 0.5 + 1e-3}).value();
   CHECK(far.interval->low < far.d_z);

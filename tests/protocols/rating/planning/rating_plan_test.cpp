@@ -154,7 +154,7 @@ TEST_CASE("sign flips reject as often as the t test where differences are normal
     CHECK(power.power.high > *power.significant.share());
     const double width = 2.0 * t_quantile(size) * 0.15 * share_of_sd(size) / std::sqrt(size);
     CHECK(*power.width == Approx(width).epsilon(0.03));
-    CHECK(power.without == 0);
+    CHECK(power.without_interval == 0);
   }
 }
 
@@ -196,7 +196,7 @@ TEST_CASE("people without a difference are missing in samples") {
   pool.people = 11;
   const DifferencePower power = power_of(pool, 2, 400, 0.5);
   // Both must be the one with a difference: a sample in 121.
-  CHECK(power.without > 385);
+  CHECK(power.without_interval > 385);
 }
 
 TEST_CASE("the fewest participants, and the error that sign flips attain") {
@@ -283,7 +283,7 @@ TEST_CASE("ratings at all visits of a participant count") {
 TEST_CASE("`power` reports each scale and size, the same again for a seed") {
   const TinyStudy tiny(two_scales());
   const auto power = [&](const planning::PowerOptions& options) {
-    return rating_planner().power(tiny.key().study, options, tools_for(tiny));
+    return rating_planner().power(tiny.key().study, options, tools_for(tiny)).text;
   };
   planning::PowerOptions options = options_with({6, 9});
   const std::string text = power(options);

@@ -77,7 +77,7 @@ class Experimenter final : public session::Attendant {
  public:
   Experimenter(EmulatedFalcon& falcon, SteppedFalcon*& device) : falcon_(falcon), device_(device) {}
 
-  [[nodiscard]] Reply attend(const std::string& need) override {
+  [[nodiscard]] Reply poll(const std::string& need) override {
     // What the motors of an unplugged Falcon do is unknown, and beyond anyone's reach.
     if (falcon_.plugged) strongest_n = std::max(strongest_n, norm(falcon_.emulator.force_n()));
     if (need.empty()) {

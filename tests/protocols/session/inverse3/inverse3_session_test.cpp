@@ -33,7 +33,7 @@ class HelperAtService final : public session::Attendant {
  public:
   explicit HelperAtService(HaplyService& service) : service_(service) {}
 
-  [[nodiscard]] Reply attend(const std::string& need) override {
+  [[nodiscard]] Reply poll(const std::string& need) override {
     if (!service_.runs()) {
       needs.push_back(need);
       if (needs.size() > 1) service_.start_again();
@@ -70,7 +70,7 @@ class PersonAtService final : public simulation::PromptParticipant {
     service_.send_command("explore");
     return station_.device();
   }
-  void exploring(device::ServoControl& servo) override {
+  void while_exploring(device::ServoControl& servo) override {
     if (lifted_) servo.finish();
   }
   void feel(const device::ServoSample& sample) noexcept override {

@@ -104,7 +104,7 @@ class HelperAtCable final : public session::Attendant {
  public:
   explicit HelperAtCable(const Vendor& vendor) : vendor_(vendor) {}
 
-  [[nodiscard]] Reply attend(const std::string& need) override {
+  [[nodiscard]] Reply poll(const std::string& need) override {
     strongest_n = std::max(strongest_n, norm(vendor_.force_n()));
     if (need.empty()) {
       ++consents;

@@ -1,7 +1,9 @@
 #include "protocols/threshold/analysis/hand_made_tracks.hpp"
 
 #include "analysis/hand_made_study.hpp"
+#include "analysis/report/results.hpp"
 #include "protocols/procedures/procedure.hpp"
+#include "protocols/threshold/analysis/threshold_analysis.hpp"
 
 #include <utility>
 
@@ -51,7 +53,7 @@ ThresholdOptions same_different_options() {
   ThresholdOptions options;
   options.task = study::threshold::Task::discrimination;
   options.question = study::threshold::Question::same_different;
-  options.along = study::threshold::Along::blend;
+  options.along = study::threshold::LevelQuantity::blend;
   options.standards = {0.0};
   options.track.procedure = "constant-stimuli";
   options.track.levels = {-20.0, -10.0, 0.0};
@@ -146,6 +148,33 @@ void HandMadeTracks::outside(int session, study::Role role, int right, int wrong
     const int target = i % 2;
     answer({session, 0, top, target, i < right ? target : 1 - target, role});
   }
+}
+
+procedures::Observer observer_at(double threshold) {
+  return {procedures::Shape::weibull, threshold, 3.5, 0.5, 0.01};
+}
+
+HandMadeTracks tracks_of(const ThresholdOptions& options, int tracks,
+                         const std::vector<double>& thresholds, bool with_catches) {
+  HandMadeTracks made(options);
+  for (std::size_t i = 0; i < thresholds.size(); ++i) {
+    made.session();
+    for (int track = 1; track <= tracks; ++track) {
+      RandomStream random(8, "threshold report test", 10 * i + static_cast<std::size_t>(track));
+      const int session = static_cast<int>(i) + 1;
+      if (with_catches) {
+        made.attended_track(session, track, observer_at(thresholds[i]), random);
+      } else {
+        made.track(session, track, observer_at(thresholds[i]), random);
+      }
+    }
+  }
+  return made;
+}
+
+nlohmann::json json_of(const HandMadeTracks& made) {
+  return nlohmann::json::parse(
+      analysis::threshold::threshold_analysis().results(made.outcomes, {})->json());
 }
 
 }  // namespace touchtrial

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 namespace touchtrial {
 
 /// From `low` to `high`, in steps.
@@ -58,5 +60,14 @@ class HandMadeTracks {
  private:
   [[nodiscard]] const study::threshold::ThresholdOptions& options() const;
 };
+
+/// Two intervals, and few lapses.
+[[nodiscard]] procedures::Observer observer_at(double threshold);
+/// Participants with these thresholds, each with every track of the study.
+[[nodiscard]] HandMadeTracks tracks_of(const study::threshold::ThresholdOptions& options,
+                                       int tracks, const std::vector<double>& thresholds,
+                                       bool with_catches = false);
+/// The report's JSON.
+[[nodiscard]] nlohmann::json json_of(const HandMadeTracks& made);
 
 }  // namespace touchtrial

@@ -121,13 +121,13 @@ int main(int argc, char** argv) {
   constexpr std::size_t kStudies = 2000;
   fmt::print(
       "\n## Means over people\n\n"
-      "By `means_table {}` of `scripts/recovery-procedures`: of each kind as many people with one "
-      "track each, whose thresholds have\n"
-      "an SD of 5 dB; levels from -40 to 0 dB. {} studies draw from them, and the truth is their "
-      "mean. *Taken as inside*: of\n"
-      "the people beyond the levels, those who enter the mean with a value.\n\n"
-      "| observers | procedure | trials | mean of all, dB | people of a study | beyond | taken as "
-      "inside | studies with a mean | bias, dB | interval covers |\n"
+      "By `means_table {}` of `scripts/recovery-procedures`: as many people of each kind, "
+      "with one track each and thresholds\n"
+      "with an SD of 5 dB. Levels are -40 to 0 dB. {} studies draw from these people; the "
+      "true value is their mean. *Taken as\n"
+      "inside*: the share of people beyond the levels who contribute a value to the mean.\n\n"
+      "| observers | procedure | trials | mean of all, dB | people of a study | beyond | "
+      "taken as inside | studies with a mean | bias, dB | interval covers |\n"
       "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
       pool, kStudies);
   for (const Kind& kind : kKinds) print_kind(kind, static_cast<std::size_t>(pool), kStudies);

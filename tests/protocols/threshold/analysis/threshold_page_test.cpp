@@ -1,5 +1,5 @@
 #include "analysis/checkers/whole_page.hpp"
-#include "analysis/exports/dataset.hpp"
+#include "analysis/exports/column_meanings.hpp"
 #include "analysis/report/figures/figure.hpp"
 #include "protocols/threshold/analysis/exports.hpp"
 #include "protocols/threshold/analysis/figures.hpp"
@@ -25,7 +25,7 @@ HandMadeTracks small_study(const study::threshold::ThresholdOptions& options) {
   const double thresholds[] = {-18.0, -14.0, 60.0};
   for (int person = 1; person <= 3; ++person) {
     made.session();
-    const bool is_blend = options.along == study::threshold::Along::blend;
+    const bool is_blend = options.along == study::threshold::LevelQuantity::blend;
     const int tracks = (is_blend ? 1 : 2) * static_cast<int>(options.standards.size());
     for (int track = 1; track <= tracks; ++track) {
       RandomStream random(5, "page", static_cast<std::uint64_t>(10 * person + track));
@@ -62,7 +62,7 @@ TEST_CASE("gnuplot draws every figure of thresholds") {
   for (const auto& options : kinds_of_studies()) {
     const own::ThresholdReport report = own::make_report(small_study(options).outcomes);
     const std::vector<analysis::Figure> figures = own::report_figures(report, "");
-    for (const std::string& svg : analysis::all_drawn(figures, analysis::FigureFormat::svg)) {
+    for (const std::string& svg : analysis::draw_figures(figures, analysis::FigureFormat::svg)) {
       CHECK(svg.size() > 1000);
     }
   }
@@ -97,7 +97,7 @@ TEST_CASE("thresholds and their intervals read as text, censored ones without a 
         "not determined, between −20.0 and −3.0");
   study::threshold::ThresholdOptions order = constant_options({0.5});
   CHECK(own::quantity_text({0.1, 0.05, {}}, order) == "10.0% [5.0, open]");
-  order.along = study::threshold::Along::order;
+  order.along = study::threshold::LevelQuantity::order;
   CHECK(own::quantity_at(order, {0, 0.5}, -20.0).value() == Approx(0.05));
   CHECK(own::quantity_text({0.05, 0.04, 0.06}, order) == "0.050 [0.040, 0.060]");
   CHECK_FALSE(own::quantity_at(options, {0, 0.0}, -20.0));

@@ -126,14 +126,14 @@ TEST_CASE("thresholds are the same only if every difference is shown to lie with
   REQUIRE(same.primary->pairs.size() == 1);
   CHECK(same.primary->interval_level == Approx(0.9));
   CHECK(std::abs(same.primary->registered().interval->low) < 5.0);
-  CHECK_THAT(same.primary->because, names("90% 5.0"));
+  CHECK_THAT(same.primary->reason, names("90% 5.0"));
   register_question(alike, equality(0.1));
   CHECK(own::make_report(alike.outcomes).primary->verdict != Verdict::supported);
   HandMadeTracks others = two_textures(kBark, kSofter);
   register_question(others, equality(2.0));
   const own::ThresholdReport report = own::make_report(others.outcomes);
   CHECK(report.primary->verdict == Verdict::not_supported);
-  CHECK_THAT(report.primary->because, names("2.0"));
+  CHECK_THAT(report.primary->reason, names("2.0"));
 }
 
 TEST_CASE("nothing follows from people who guess") {
@@ -142,7 +142,7 @@ TEST_CASE("nothing follows from people who guess") {
   register_question(made, equality(100.0));
   const own::ThresholdReport report = own::make_report(made.outcomes);
   CHECK(report.primary->verdict == Verdict::undecided);
-  CHECK_FALSE(report.primary->because.empty());
+  CHECK_FALSE(report.primary->reason.empty());
   register_question(made, kBarkAlone);
   CHECK(own::make_report(made.outcomes).primary->verdict == Verdict::undecided);
 }
@@ -175,7 +175,7 @@ TEST_CASE("the verdict says by what everybody was left out") {
   const own::ThresholdReport report = own::make_report(made.outcomes);
   CHECK(choice_of(report, "registered").participants == 0);
   CHECK(report.primary->verdict == Verdict::undecided);
-  CHECK_THAT(report.primary->because, names("6 2"));
+  CHECK_THAT(report.primary->reason, names("6 2"));
 }
 
 }  // namespace touchtrial

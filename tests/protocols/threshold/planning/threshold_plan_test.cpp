@@ -71,10 +71,10 @@ TEST_CASE("half-widths of samples from a normal pool are those of the chi-square
     const double expected =
         boost::math::cdf(boost::math::chi_squared(row.participants - 1.0), of_variance);
     CHECK(*width.narrow.share() == Approx(expected).margin(0.03));
-    CHECK(width.without == analysis::Proportion{4000, 0});
+    CHECK(width.without_interval == analysis::Proportion{4000, 0});
     // Everybody has the same first threshold, which tells nothing of how people differ.
     CHECK_FALSE(row.standards.at(0).upper.has_value());
-    CHECK(row.standards.at(0).without == analysis::Proportion{4000, 4000});
+    CHECK(row.standards.at(0).without_interval == analysis::Proportion{4000, 4000});
     CHECK_FALSE(row.difference.has_value());
   }
 }
@@ -117,10 +117,10 @@ TEST_CASE("most samples of people beyond the levels have no interval, and the pl
   pool.people.push_back({{-20.0, -20.0}});
   const ThresholdPlan plan{.participants = {2}, .runs = 400, .seed = 1, .width_db = 100.0};
   const HalfWidths width = rows_of(pool, plan, 1).front().standards.front();
-  CHECK(width.without == analysis::Proportion{400, 400});
+  CHECK(width.without_interval == analysis::Proportion{400, 400});
   CHECK_FALSE(width.median.has_value());
   CHECK_FALSE(width.upper.has_value());
-  CHECK(width.narrow.correct == 400 - width.without.correct);
+  CHECK(width.narrow.correct == 400 - width.without_interval.correct);
   ThresholdPlanReport report{{"study", "people", "dB"}, plan, {}};
   report.pools.emplace_back(pool, rows_of(pool, plan, 1));
   const auto document = nlohmann::json::parse(threshold_plan_json(report));
@@ -145,7 +145,7 @@ TEST_CASE("people beyond the levels count in a plan, so the mean is not that of 
   const ThresholdPlan plan{.participants = {20}, .runs = 400, .seed = 2};
   const HalfWidths width = rows_of(pool, plan, 1).front().standards.front();
   // A sample of 20 loses its mean if eleven or more are beyond: in 5 of 100.
-  CHECK(width.without.share().value() == Approx(0.05).margin(0.03));
+  CHECK(width.without_interval.share().value() == Approx(0.05).margin(0.03));
   CHECK(*width.median > half_width_quantile(20, 5.0, 0.5));
 }
 

@@ -163,7 +163,7 @@ TEST_CASE("a server that sends a little for ever is given up") {
     if (!say(one_column())) return;
     while (say(one_row("a"))) std::this_thread::sleep_for(5ms);
   });
-  CHECK_THAT(refusal_by(server, {.whole = 500ms}), holds_text("127.0.0.1"));
+  CHECK_THAT(refusal_by(server, {.total = 500ms}), holds_text("127.0.0.1"));
 }
 
 TEST_CASE(

@@ -76,7 +76,7 @@ TEST_CASE("a row is read as it was sent, and stored once") {
   table->add(row_of(7), chain, {});
   const std::vector<BundleRow> rows = table->rows();
   REQUIRE(rows.size() == 1);
-  CHECK(rows[0].is_part(row_of(7)));
+  CHECK(rows[0].is_same_part(row_of(7)));
   CHECK(rows[0].seal == digest_of("seal"));
   CHECK(rows[0].keys == 2);
   CHECK(rows[0].sent_by == PostgresServer::kAdministrator);
@@ -116,7 +116,8 @@ TEST_CASE("a collecting role only adds, a reading role only reads, and a row nam
   CHECK(is_denied(refusal_of([&] { static_cast<void>(there.table("stranger")->rows()); })));
   const auto as_lab_a = [&](const std::string& statement) {
     return refusal_of([&] {
-      ServerConnection(connection_options(there.server().url(there.name, "lab_a"))).ask(statement);
+      ServerConnection(connection_options(there.server().url(there.name, "lab_a")))
+          .execute(statement);
     });
   };
   for (const char* const statement :

@@ -80,7 +80,7 @@ class LockstepPace final : public FalconPace {
     state_->now = std::max(state_->now, time);
   }
 
-  void waited(Time time) noexcept override {
+  void on_wait(Time time) noexcept override {
     const std::lock_guard lock(state_->mutex);
     state_->now += time;
   }

@@ -74,7 +74,7 @@ TEST_CASE("a Falcon on the bus is found with its place and serial number") {
   REQUIRE(found.size() == 1);
   CHECK(found[0].where == "USB bus 1 port 2, address 7");
   CHECK(found[0].serial == "AB12");
-  CHECK(found[0].trouble.empty());
+  CHECK(found[0].problem.empty());
   CHECK(device.open_handles() == 0);
 }
 
@@ -90,7 +90,7 @@ TEST_CASE("without permission the remedy is the udev rule") {
   device.allow(false);
   const auto found = find_usb_falcons();
   REQUIRE(found.size() == 1);
-  CHECK_THAT(found[0].trouble, holds_text("scripts/install-udev-rules"));
+  CHECK_THAT(found[0].problem, holds_text("scripts/install-udev-rules"));
   CHECK_THAT(refusal(), holds_text("scripts/install-udev-rules"));
   CHECK_THAT(refusal("FALCON1"), holds_text("scripts/install-udev-rules"));
 }
@@ -99,7 +99,7 @@ TEST_CASE("a Falcon that another program has claimed is busy, and nothing stays 
   Loopback model;
   ShimmedUsbDevice device(model);
   device.use_elsewhere(true);
-  CHECK_FALSE(find_usb_falcons().at(0).trouble.empty());
+  CHECK_FALSE(find_usb_falcons().at(0).problem.empty());
   CHECK_THAT(refusal(), names(find_usb_falcons().at(0).where));
   CHECK(device.open_handles() == 0);
 }
@@ -108,7 +108,7 @@ TEST_CASE("a kernel driver is detached while the Falcon is open, and reattached"
   Loopback model;
   ShimmedUsbDevice device(model);
   device.attach_kernel_driver(true);
-  CHECK(find_usb_falcons().at(0).trouble.empty());
+  CHECK(find_usb_falcons().at(0).problem.empty());
   CHECK(device.has_kernel_driver());
   {
     const auto transport = open_usb_falcon("");

@@ -8,18 +8,18 @@
 
 namespace touchtrial::device {
 
-/// Holds a resource that a vendor's library supports only once at a time. Any thread.
-class OnlyUser {
+/// Reserves a resource that a vendor's library supports only once at a time. Any thread.
+class ExclusiveUse {
  public:
   /// \param in_use  the resource's flag; must outlive this
   /// \param refusal  one line: why a second use is refused, and the remedy
   /// \throws DeviceError with `refusal` if it is in use
-  OnlyUser(std::atomic<bool>& in_use, const std::string& refusal) : in_use_(in_use) {
+  ExclusiveUse(std::atomic<bool>& in_use, const std::string& refusal) : in_use_(in_use) {
     if (in_use_.exchange(true)) throw DeviceError(one_line(refusal));
   }
-  ~OnlyUser() { in_use_.store(false); }
-  OnlyUser(const OnlyUser&) = delete;
-  OnlyUser& operator=(const OnlyUser&) = delete;
+  ~ExclusiveUse() { in_use_.store(false); }
+  ExclusiveUse(const ExclusiveUse&) = delete;
+  ExclusiveUse& operator=(const ExclusiveUse&) = delete;
 
  private:
   std::atomic<bool>& in_use_;

@@ -1,4 +1,4 @@
-#include "app/commands/made_folder.hpp"
+#include "app/commands/new_folder.hpp"
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
@@ -11,19 +11,20 @@ namespace touchtrial::app {
 
 namespace fs = std::filesystem;
 
-MadeFolder::MadeFolder(const fs::path& folder) : folder_(folder), had_(is_there(folder)) {
+NewFolder::NewFolder(const fs::path& folder) : folder_(folder), existed_(path_exists(folder)) {
   require_free(folder);
-  for (first_ = folder; !had_ && first_.has_parent_path() && !is_there(first_.parent_path());) {
-    first_ = first_.parent_path();
+  for (topmost_ = folder;
+       !existed_ && topmost_.has_parent_path() && !path_exists(topmost_.parent_path());) {
+    topmost_ = topmost_.parent_path();
   }
   make_folder(folder);
 }
 
-MadeFolder::~MadeFolder() {
+NewFolder::~NewFolder() {
   if (is_kept_) return;
   std::error_code ignored;
-  if (!had_) {
-    fs::remove_all(first_, ignored);
+  if (!existed_) {
+    fs::remove_all(topmost_, ignored);
     return;
   }
   for (const auto& entry : fs::directory_iterator(folder_, ignored)) {
@@ -35,7 +36,7 @@ void require_free(const fs::path& folder) {
   if (folder.empty()) throw UsageError("the folder's name is empty; name a new folder");
   // "new/.." is an existing folder even if "new" does not exist.
   const fs::path place = fs::absolute(folder).lexically_normal();
-  if (!is_there(place)) return;
+  if (!path_exists(place)) return;
   std::error_code unreadable;
   const std::string name = one_line(folder.string());
   if (!fs::is_directory(place, unreadable))

@@ -15,15 +15,15 @@ namespace touchtrial::app {
 /// `--bits` and `--heights`.
 void add_sample_options(CLI::App& command, engine::SampleScale& scale);
 
-/// Reads a picture, and warns of lost information.
+/// Reads a picture, and warns about lost information.
 /// \throws FileError as engine::read_picture
-[[nodiscard]] GreyImage read_given_picture(const std::filesystem::path& path,
+[[nodiscard]] GreyImage read_input_picture(const std::filesystem::path& path,
                                            const engine::SampleScale& scale = {});
 
-/// Calls `read`, which reads photographs, and returns its result. Several faults are all printed
-/// before it throws; a single one is the error's own line.
+/// Calls `read`, which reads photographs, and returns its result. If it throws, several faults are
+/// printed first; a single one is only in the exception.
 template <typename Read>
-auto naming_faults(const Read& read) {
+auto with_faults_printed(const Read& read) {
   try {
     return read();
   } catch (const stimuli::UnusablePhotographs& error) {
