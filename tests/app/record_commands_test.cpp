@@ -234,8 +234,7 @@ TEST_CASE("an exclusion after outcomes were seen is accepted only if that is rec
 
 TEST_CASE("a replacement inherits the participant's enrolment number and its schedule") {
   const PeopleStudy study;
-  check_refused(study.people("replace P002 --with P021 --reason ill"), 1,
-                {"P002", "complete"});
+  check_refused(study.people("replace P002 --with P021 --reason ill"), 1, {"P002", "complete"});
   succeeded(study.people("exclude P002 --reason ill"));
   check_refused(study.people("replace P002 --with P003 --reason ill"), 1, {"P003"});
   check_refused(study.people("replace P002 --with 'no id' --reason ill"), 1, {"'no id'"});

@@ -224,7 +224,8 @@ TEST_CASE("verify_study with the key opens each trace and counts its samples") {
   trace.samples.resize(5);
   const auto record_trial = [&](record::SessionRecorder& recorder) {
     recorder.presented(1s, 1, 0);
-    record::TrialEvidence evidence = recorder.pack_evidence({.trial = 1, .rate_hz = 1000.0}, {}, trace);
+    record::TrialEvidence evidence =
+        recorder.pack_evidence({.trial = 1, .rate_hz = 1000.0}, {}, trace);
     if (fault == Fault::samples) evidence.body.samples = 6;
     if (fault == Fault::key) {
       evidence.trace = record::seal_trace(1, 1, trace, SecretKey{});
